@@ -47,6 +47,10 @@ void bind_terrain(py::module_& module) {
       .def_property_readonly(
           "loose", [](const Terrain& t) { return array(t.loose); },
           "Thickness of the loose soil, shape (rows, columns) [m].")
+      .def_property_readonly(
+          "obstacles", [](const Terrain& t) { return array(t.obstacles); },
+          "Top of what stands on the ground, NaN where nothing does, shape (rows, columns) [m];\n"
+          "empty: nothing anywhere.")
       .def("surface", &Terrain::surface, "bank + loose.");
   py::implicitly_convertible<HeightMap, Terrain>();
   py::class_<TerrainPatch>(module, "TerrainPatch", "A block of a terrain's cells in a new state.")

@@ -32,12 +32,23 @@ void require_terrain(const Terrain& terrain, const char* what) {
     if (layer->size() == 0 || same_size(*layer, z)) continue;
     refuse(std::string(what) + ": void ratios must be as large as the map");
   }
+  if (terrain.obstacles.size() > 0 && !same_size(terrain.obstacles, z)) {
+    refuse(std::string(what) + ": obstacles must be as large as the map");
+  }
 }
 
 HeightMap Terrain::surface() const {
   if (!same_size(loose, bank.z)) refuse("surface: the loose layer must be as large as the map");
   HeightMap map = bank;
   map.z += loose;
+  return map;
+}
+
+HeightMap Terrain::highest() const {
+  HeightMap map = surface();
+  if (obstacles.size() == 0) return map;
+  if (!same_size(obstacles, map.z)) refuse("surface: obstacles must be as large as the map");
+  map.z = (obstacles > map.z || map.z.isNaN()).select(obstacles, map.z).eval();
   return map;
 }
 

@@ -70,6 +70,11 @@ double Machine::undercarriage_width() const {
   return track_width.value_or(of_zx120 * std::max(0.0, track_front));
 }
 
+double Machine::tail_swing_radius() const {
+  constexpr double of_track_front = 1.35;
+  return tail_radius.value_or(of_track_front * std::max(0.0, track_front));
+}
+
 double struck_capacity(const Machine& machine) {
   require_in("corners of the bucket's profile", static_cast<double>(machine.bucket.profile.size()),
              3.0, 1000.0);

@@ -38,6 +38,7 @@ void read_geometry(JsonObject file, Machine& machine) {
   machine.bucket_length = positive(file, "bucket_length_m", longest);
   machine.track_front = file.number("track_front_m", -longest, longest);
   if (file.has("track_width_m")) machine.track_width = positive(file, "track_width_m", longest);
+  if (file.has("tail_radius_m")) machine.tail_radius = positive(file, "tail_radius_m", longest);
   file.ignore("sources");
   file.done();
 }

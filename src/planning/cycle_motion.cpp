@@ -41,7 +41,7 @@ class CycleWay {
       : machine_(machine), load_(load), empty_(machine), loaded_(machine, load.payload_mass) {}
 
   /// Needed by go().
-  void stand_on(const HeightMap& ground) { surroundings_.emplace(machine_, ground); }
+  void stand_on(const Terrain& ground) { surroundings_.emplace(machine_, ground); }
 
   void start_at(const FrontJoints& joints) {
     way_.poses.push_back({DigPhase::approach, joints, JointAngles::Zero()});
@@ -67,6 +67,9 @@ class CycleWay {
     const FrontJoints from = joints();
     const Clearance first = surroundings_->standing(from);
     if (first.height < -deepest) return blocked(phase, first, "where the way begins");
+    if (const auto tail = surroundings_->tail_obstacle(from, to)) {
+      return blocked(phase, *tail, "with its tail");
+    }
     const bool dumps = phase == DigPhase::swing || phase == DigPhase::dump;
     const Clearance last = surroundings_->standing(to);
     if (dumps && last.height < 0.0) return blocked(phase, last, "where it dumps");
@@ -100,7 +103,7 @@ class CycleWay {
       way_.warnings.emplace_back(
           WarningCode::unseen_way,
           readable(unseen_.area, 2) +
-              " m2 of the ground that arm and bucket pass over off the dig were not seen, first "
+              " m2 of the ground that the front passes over off the dig were not seen, first "
               "at x = " +
               readable(unseen_.first.x(), 2) + " m, y = " + readable(unseen_.first.y(), 2) +
               " m; it is taken to lie as high as the tracks");
@@ -141,7 +144,8 @@ class CycleWay {
 
   BlockedWay blocked(DigPhase phase, const Clearance& at, const std::string& when) const {
     const bool own = surroundings_->on_undercarriage(at.place.x(), at.place.y());
-    const std::string what = own ? "undercarriage" : "ground";
+    const bool stands = surroundings_->stands_at(at.place.x(), at.place.y());
+    const std::string what = own ? "undercarriage" : stands ? "obstacle" : "ground";
     BlockedWay stop;
     stop.phase = phase;
     stop.place = at.place;
@@ -205,7 +209,7 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
   const double ahead = turns_to(machine, options);
   for (WayPose& pose : dig.poses) pose.joints[3] = ahead;
   CycleWay way(machine, load);
-  if (options.start || options.whole_cycle) way.stand_on(ground.surface());
+  if (options.start || options.whole_cycle) way.stand_on(ground);
   if (options.start) {
     way.start_at(*options.start);
     if (auto stop = way.go(DigPhase::approach, dig.poses.front().joints, false)) return *stop;

@@ -15,7 +15,7 @@ namespace excavplan {
 
 /// Ground that boom or arm would pass through.
 struct FrontContact {
-  const char* link = "";  ///< "boom" or "arm"
+  const char* link = "";  ///< "boom", "arm" or "bucket"
   double x = 0.0;         ///< of the ground [m]
   double z = 0.0;         ///< of the ground [m]
   double lowest = 0.0;    ///< height of the link's lower side there [m]
@@ -24,7 +24,8 @@ struct FrontContact {
 /// "the boom would pass through the ground at x = 2.5 m, ..."
 std::string describe(const FrontContact& contact);
 
-/// The room that the ground ahead of the tracks leaves to boom and arm.
+/// The room that the ground ahead of the tracks leaves to boom and arm, and what stands on it to
+/// the bucket too, at 0.1 m to every side.
 ///
 /// Their lower sides are the lines from pin to pin: their bodies lie above these
 /// (LinkMass::across).
@@ -37,12 +38,14 @@ class FrontRoom {
 
  private:
   std::optional<FrontContact> contact(const char* link, const Eigen::Vector2d& from,
-                                      const Eigen::Vector2d& to) const;
+                                      const Eigen::Vector2d& to,
+                                      const std::vector<double>& heights) const;
 
   const Machine& machine_;
   double origin_;
   double cell_size_;
-  std::vector<double> heights_;  ///< per column: of the highest ground under the links
+  std::vector<double> heights_;   ///< per column: of what is highest under the links
+  std::vector<double> standing_;  ///< of what stands there, for the bucket too; empty: nothing
   double highest_;
 };
 

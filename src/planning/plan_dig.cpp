@@ -18,6 +18,7 @@
 #include "base/files.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "ground/obstacles.hpp"
 #include "ground/terrain.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
@@ -74,15 +75,6 @@ void judge_density(const Task& task, DigPlan& plan) {
   }
 }
 
-/// Of a column, as far to both sides of the boom plane.
-void add_known_heights(const HeightMap& map, Eigen::Index col, double half_width,
-                       std::vector<double>& heights) {
-  for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
-    const bool inside = std::abs(map.y(row)) <= half_width;
-    if (inside && !std::isnan(map.z(row, col))) heights.push_back(map.z(row, col));
-  }
-}
-
 /// Of a terrain alone it goes without saying that it does not show all that the machine stands on.
 void judge_standing(const Task& task, DigPlan& plan) {
   const std::optional<HeightMap>& given = task.options.standing_on;
@@ -95,23 +87,21 @@ void judge_standing(const Task& task, DigPlan& plan) {
   }
 }
 
-/// The simulators dig all ground as soil: they do not know a post or a rock.
+/// What stands in the strip of the bucket is not dug; the dig is laid out clear of it.
 void judge_strip(const Task& task, DigPlan& plan) {
-  constexpr double inner = 0.7;  // of the bucket's width: beside it a wall may stand; ours
-  constexpr double most = 0.5;   // above the median of the width [m]; ours
-  const HeightMap map = task.ground.surface();
-  const Rectangle strip = swept_strip(task.machine, plan.path);
-  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
-    if (map.x(col) < strip.x_min || map.x(col) > strip.x_max) continue;
-    std::vector<double> heights;
-    add_known_heights(map, col, inner * strip.y_max, heights);
-    if (heights.empty()) continue;
-    const double above = *std::max_element(heights.begin(), heights.end()) - median(heights);
-    if (!(above > most)) continue;
-    warn(plan, {WarningCode::obstacle_in_strip,
-                "at x = " + readable(map.x(col)) + " m something stands " + readable(above, 2) +
-                    " m above the ground that the bucket passes; the plan takes it for soil"});
-    return;
+  const Eigen::ArrayXXd& tops = task.ground.obstacles;
+  const HeightMap& map = task.ground.bank;
+  const double half = 0.5 * task.machine.bucket.width_outside;
+  for (Eigen::Index col = 0; tops.size() > 0 && col < map.z.cols(); ++col) {
+    if (map.x(col) < task.machine.track_front) continue;
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      if (std::abs(map.y(row)) > half || std::isnan(tops(row, col))) continue;
+      warn(plan, {WarningCode::obstacle_in_strip,
+                  "at x = " + readable(map.x(col)) + " m something stands " +
+                      readable(tops(row, col), 2) + " m high where the bucket could dig: no dig " +
+                      "is planned there"});
+      return;
+    }
   }
 }
 
@@ -526,6 +516,7 @@ DigPlan plan_dig(const Task& task) {
   plan.attitude = plan.on_slope = task.options.attitude;
   judge_density(task, plan);
   if (!task.level || task.options.standing_on) judge_standing(task, plan);
+  judge_strip(task, plan);
   std::optional<PossibleGround> ground;  // not for a density taken as known that is looked up
   if (plan.method == PlanMethod::search || task.uncertain()) {
     ground.emplace(task.options.simulator, task.machine, task.soil, task.density);
@@ -534,7 +525,6 @@ DigPlan plan_dig(const Task& task) {
   if (plan.method == PlanMethod::search) search_plan(task, ground->soils(), plan);
   if (!is_worth_making(plan)) return plan;
   judge_fill(task, plan);
-  if (!task.level) judge_strip(task, plan);
   plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
   if (task.uncertain()) add_spread(task, ground->soils(), plan);
   add_result(task, plan);
@@ -568,8 +558,9 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const Terrain& terrain, const PlanOptions& options) {
+  require_terrain(terrain, "ground to dig on");
   const Machine standing = with_attitude(machine, options.attitude);
-  return plan_dig(Task{standing, machine, soil, density, terrain, false, options});
+  return plan_dig(Task{standing, machine, soil, density, with_obstacles(terrain), false, options});
 }
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,

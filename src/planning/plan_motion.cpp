@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/plan_motion.hpp>
 
+#include <cstring>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -28,6 +29,11 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& filed, const Ter
   for (Warning& each : load_warnings(machine, std::get<Way>(laid), plan.on_slope)) {
     timed.warnings.push_back(std::move(each));
   }
+  const HeightMap seen = ground.highest();
+  const auto bytes = static_cast<std::size_t>(seen.z.size()) * sizeof(double);
+  std::string content(bytes, '\0');
+  std::memcpy(content.data(), seen.z.data(), bytes);
+  timed.plan = PlanStamp{checksum_text(fingerprint(machine) + to_csv(timed) + content)};
   return timed;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ground/window.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -92,33 +94,15 @@ void enter(const HeightMap& map, HeightMap& grid) {
   grid.z = (entered == -infinity).select(grid.z, highest).eval();
 }
 
-/// The highest of each cell and those up to so many cells away along both axes.
-ArrayXXd highest_within(const ArrayXXd& z, Index cells) {
-  ArrayXXd rows = z;
-  for (Index shift = 1; shift <= std::min(cells, z.rows() - 1); ++shift) {
-    const Index n = z.rows() - shift;
-    rows.topRows(n) = rows.topRows(n).max(z.bottomRows(n));
-    rows.bottomRows(n) = rows.bottomRows(n).max(z.topRows(n));
-  }
-  ArrayXXd both = rows;
-  for (Index shift = 1; shift <= std::min(cells, z.cols() - 1); ++shift) {
-    const Index n = z.cols() - shift;
-    both.leftCols(n) = both.leftCols(n).max(rows.rightCols(n));
-    both.rightCols(n) = both.rightCols(n).max(rows.leftCols(n));
-  }
-  return both;
-}
-
 ArrayXXd lowest_beside(const ArrayXXd& z) {
-  const ArrayXXd known = z.isNaN().select(ArrayXXd::Constant(z.rows(), z.cols(), infinity), z);
-  const ArrayXXd low = -highest_within(-known, 1);
+  const ArrayXXd low = lowest_within(without_nan(z, infinity), 1);
   return (low == infinity).select(-infinity, low);
 }
 
 }  // namespace
 
-Surroundings::Surroundings(const Machine& machine, const HeightMap& ground)
-    : machine_(machine), seen_(grid_over(machine, ground)) {
+Surroundings::Surroundings(const Machine& machine, const Terrain& ground)
+    : machine_(machine), seen_(grid_over(machine, ground.bank)) {
   const double front = std::max(0.0, machine.track_front);
   const double half = 0.5 * machine.undercarriage_width();
   undercarriage_ = {-front, -half, front, half};
@@ -129,12 +113,27 @@ Surroundings::Surroundings(const Machine& machine, const HeightMap& ground)
   // and half a step of the motion away.
   near_ = 0.8 * cells_of_margin_ * cell;
   fine_ = 0.7 * cell;  // a square of it holds one of the points of a square grid
-  replace(ground);
+  HeightMap standing = seen_;
+  if (ground.obstacles.size() > 0) {
+    enter({ground.bank.origin, ground.bank.cell_size, ground.obstacles}, standing);
+  }
+  standing_ = without_nan(standing.z, -infinity);
+  for (Index col = 0; col < standing_.cols(); ++col) {
+    for (Index row = 0; row < standing_.rows(); ++row) {
+      if (undercarriage_.contains(seen_.x(col), seen_.y(row))) standing_(row, col) = -infinity;
+    }
+  }
+  stands_ = highest_within(standing_, static_cast<Index>(cells_of_margin_));
+  replace(ground.surface());
+  put_beside();
 }
 
 void Surroundings::replace(const HeightMap& by) {
   enter(by, seen_);
   put_undercarriage();
+  seen_.z = (standing_ > seen_.z || (seen_.z.isNaN() && standing_ > -infinity))
+                .select(standing_, seen_.z)
+                .eval();
   const auto cells = static_cast<Index>(std::min(cells_of_margin_, 2.0 * cells_in_reach));
   highest_ = highest_within(seen_.z.isNaN().select(0.0, seen_.z), cells);
   lowest_ = lowest_beside(seen_.z);
@@ -152,8 +151,46 @@ void Surroundings::put_undercarriage() {
   }
 }
 
+bool Surroundings::stands_at(double x, double y) const {
+  const auto cell = cell_at(seen_, {x, y});
+  return cell && stands_(cell->row, cell->col) > -infinity;
+}
+
+void Surroundings::put_beside() {
+  const double tail = machine_.tail_swing_radius() + margin + seen_.cell_size;
+  const double low = track_height * undercarriage_.x_max - margin;
+  for (Index col = 0; col < seen_.z.cols(); ++col) {
+    for (Index row = 0; row < seen_.z.rows(); ++row) {
+      const Eigen::Vector3d top(seen_.x(col), seen_.y(row), seen_.z(row, col));
+      const bool hit = top.z() > low && top.head<2>().norm() <= tail;
+      if (hit && !on_undercarriage(top.x(), top.y())) beside_.push_back(top);
+    }
+  }
+}
+
+std::optional<Clearance> Surroundings::tail_obstacle(const FrontJoints& from,
+                                                     const FrontJoints& to) const {
+  const double tail = machine_.tail_swing_radius(), half = undercarriage_.y_max;
+  const auto within = [&](const Eigen::Vector3d& top, double swing, double more) {
+    const double ahead = top.x() * std::cos(swing) + top.y() * std::sin(swing);
+    const double aside = top.y() * std::cos(swing) - top.x() * std::sin(swing);
+    return ahead >= -tail - more && ahead <= half + more && std::abs(aside) <= half + more;
+  };
+  const double steps = std::ceil(std::abs(to[3] - from[3]) * (tail + margin) / seen_.cell_size);
+  const double near = margin + 0.5 * seen_.cell_size;
+  for (const Eigen::Vector3d& top : beside_) {
+    if (within(top, from[3], 0.0)) continue;
+    for (double i = 1.0; i <= steps; ++i) {
+      if (!within(top, from[3] + i / steps * (to[3] - from[3]), near)) continue;
+      return Clearance{track_height * undercarriage_.x_max - top.z(), top};
+    }
+  }
+  return std::nullopt;
+}
+
 /// Points of the machine that are not too high, which a visit may change, over the width of the
-/// bucket: visit(place, height of its lower side, whether of arm or bucket).
+/// bucket: visit(place, height of its lower side). Of the boom over the machine, where its foot is,
+/// only what something stands at.
 template <typename Visit>
 void Surroundings::visit(const FrontJoints& joints, double spacing, const double& too_high,
                          Visit visit) const {
@@ -165,12 +202,13 @@ void Surroundings::visit(const FrontJoints& joints, double spacing, const double
     const double steps = std::max(1.0, std::ceil((to - from).norm() / spacing));
     for (double i = 0.0; i <= steps; ++i) {
       const Vector2d at = from + i / steps * (to - from);
-      if (is_boom && std::abs(at.x()) <= own_radius_) continue;  // its foot is on the machine
+      const bool on_machine = is_boom && std::abs(at.x()) <= own_radius_;
       for (double strip = 0.0; strip <= strips; ++strip) {
         if (at.y() - below >= too_high) break;
         const double aside = (strip / strips - 0.5) * width;
-        visit(Vector2d(at.x() * ahead + aside * Vector2d(-ahead.y(), ahead.x())), at.y() - below,
-              !is_boom);
+        const Vector2d place = at.x() * ahead + aside * Vector2d(-ahead.y(), ahead.x());
+        if (on_machine && !stands_at(place.x(), place.y())) continue;
+        visit(place, at.y() - below);
       }
     }
   };
@@ -190,7 +228,7 @@ Clearance Surroundings::least(const FrontJoints& joints, double spacing, double 
   Clearance found;
   found.height = most;
   double too_high = top_ + most;
-  visit(joints, spacing, too_high, [&](const Vector2d& place, double bottom, bool) {
+  visit(joints, spacing, too_high, [&](const Vector2d& place, double bottom) {
     const auto cell = cell_at(seen_, place);
     const double ground = cell ? height_of(cell->row, cell->col) : 0.0;
     if (bottom - ground >= found.height) return;
@@ -230,7 +268,7 @@ std::optional<Clearance> Surroundings::obstacle(const FrontJoints& from,
 std::optional<Clearance> Surroundings::obstacle_leaving(const FrontJoints& from,
                                                         const FrontJoints& to) const {
   UnseenGround::Cells stands = UnseenGround::Cells::Constant(seen_.z.rows(), seen_.z.cols(), false);
-  visit(from, fine_, infinity, [&](const Vector2d& place, double, bool) {
+  visit(from, fine_, infinity, [&](const Vector2d& place, double) {
     const auto cell = cell_at(seen_, place);
     if (!cell) return;
     const Index row = std::max<Index>(0, cell->row - 1), col = std::max<Index>(0, cell->col - 1);
@@ -267,9 +305,9 @@ void Surroundings::pass(const FrontJoints& from, const FrontJoints& to,
   const double count = parts(from, to, near_);
   for (double i = 0.0; i <= count; ++i) {
     const FrontJoints at = from + i / count * (to - from);
-    visit(at, fine_, infinity, [&](const Vector2d& place, double, bool is_low) {
+    visit(at, fine_, infinity, [&](const Vector2d& place, double) {
       const auto cell = cell_at(seen_, place);
-      if (!is_low || !cell || !std::isnan(seen_.z(cell->row, cell->col))) return;
+      if (!cell || !std::isnan(seen_.z(cell->row, cell->col))) return;
       bool& passed = unseen.cells(cell->row, cell->col);
       if (passed) return;
       passed = true;

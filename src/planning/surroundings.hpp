@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -31,15 +32,17 @@ struct UnseenGround {
   Cells cells;                                      ///< that count already
 };
 
-/// The ground that the machine can pass over, and its own undercarriage, which does not turn.
+/// The ground that the machine can pass over, what stands on it, and its own undercarriage, which
+/// does not turn. Boom and arm are taken to be as wide as the bucket, and nothing passes below what
+/// hangs over the ground: boom tops and the heap of a load need no look of their own.
 ///
 /// Heights are compared at points so close that, together with the margin to every side, no cell
 /// passes between them.
 class Surroundings {
  public:
-  Surroundings(const Machine& machine, const HeightMap& ground);
+  Surroundings(const Machine& machine, const Terrain& ground);
 
-  /// Where this ground is known it takes the place of the one before.
+  /// Where this ground is known it takes the place of the one before; what stands on it stays.
   void replace(const HeightMap& by);
 
   /// Of the machine where it stands. Cells at its rim count as low as the lowest beside them, and
@@ -56,7 +59,14 @@ class Surroundings {
   /// Adds the unseen ground of a straight way.
   void pass(const FrontJoints& from, const FrontJoints& to, UnseenGround& unseen) const;
 
+  /// Where the tail, or the upper structure beside it, comes within the margin of what stands
+  /// beside the tracks and higher than these. What is in the upper structure where the way begins
+  /// is of the machine itself.
+  std::optional<Clearance> tail_obstacle(const FrontJoints& from, const FrontJoints& to) const;
+
   bool on_undercarriage(double x, double y) const { return undercarriage_.contains(x, y); }
+  /// Whether something stands there, or within the margin.
+  bool stands_at(double x, double y) const;
 
  private:
   using Heights = Eigen::ArrayXXd;
@@ -64,6 +74,7 @@ class Surroundings {
   Clearance margin_at(const FrontJoints& joints) const;
   double parts(const FrontJoints& from, const FrontJoints& to, double spacing) const;
   void put_undercarriage();
+  void put_beside();
   template <typename Visit>
   void visit(const FrontJoints& joints, double spacing, const double& too_high, Visit visit) const;
   template <typename Height>
@@ -71,8 +82,11 @@ class Surroundings {
 
   const Machine& machine_;
   Rectangle undercarriage_;
-  double own_radius_;  ///< of the circle through the corners of the tracks [m]
-  HeightMap seen_;     ///< the highest ground of each cell
+  double own_radius_;                    ///< of the circle through the corners of the tracks [m]
+  HeightMap seen_;                       ///< the highest ground of each cell
+  Heights standing_;                     ///< tops of obstacles; -infinity: none
+  Heights stands_;                       ///< of these within the margin
+  std::vector<Eigen::Vector3d> beside_;  ///< tops that the upper structure may hit [m]
   double cells_of_margin_;
   Heights highest_;  ///< within the margin; unseen ground as the plane of the tracks
   Heights lowest_;   ///< of a cell and those beside it; unseen: -infinity

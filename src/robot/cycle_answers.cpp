@@ -45,8 +45,12 @@ std::string to_json(const CyclePlan& answer) {
   json.update({{"start_rule", plan.start_rule},
                {"evaluations", plan.evaluations},
                {"trajectory_points", answer.motion.points.size()},
+               {"plan_id", nullptr},
+               {"scan_age_s", nullptr},
                {"trustworthy", answer.trustworthy},
                {"warnings", warnings_json(answer.warnings)}});
+  if (answer.stamp) json["plan_id"] = answer.stamp->id;
+  if (answer.scan_age) json["scan_age_s"] = *answer.scan_age;
   return json_text(json);
 }
 

@@ -73,6 +73,7 @@ void check(const DigCycleSettings& settings) {
   require_in("scans", static_cast<double>(settings.scans), 1.0, DigCycleSession::most_scans);
   require(settings.site_from_scan.allFinite(), "site_from_scan: a number is not finite");
   require(settings.oldest_joints > 0.0, "oldest_joints [s]", settings.oldest_joints, "above 0");
+  require(settings.oldest_scan > 0.0, "oldest_scan [s]", settings.oldest_scan, "above 0");
   require(settings.search_seconds > 0.0, "search_seconds", settings.search_seconds, "above 0");
   require_density(settings.density);
   require_machine(settings.machine);

@@ -72,6 +72,8 @@ struct DigCycleSession::State {
   PlanOptions plan_options() const;
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
+  Time scan_time() const;
+  void add_age(CyclePlan& answer) const;
 
   DigCycleSettings settings;
   CycleStage stage = CycleStage::before;
@@ -86,6 +88,7 @@ struct DigCycleSession::State {
   bool density_is_stated = true;
   bool last_refused = false;          ///< the last estimate was not to be trusted
   std::optional<PlannedDig> planned;  ///< the last plan
+  std::string plan_id;                ///< of its motion; empty: none, or it has begun
   std::optional<PlannedDig> driven;   ///< what was planned when the last dig began
 };
 
@@ -345,11 +348,41 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
     } else {
       const auto& timed = std::get<Trajectory>(motion);
       answer.motion = joint_motion(timed);
+      answer.stamp = timed.plan;
+      answer.stamp->pose = Eigen::Isometry3d(settings.site_from_scan).inverse();
       answer.warnings.insert(answer.warnings.end(), timed.warnings.begin(), timed.warnings.end());
     }
   } catch (const Error& error) {
     refuse(error.what());
   }
+}
+
+/// Of the oldest points in the last scan; nothing: they do not tell.
+Time DigCycleSession::State::scan_time() const {
+  const Frames& seen = is_outdated() ? before : recent;
+  Time oldest;
+  for (const LiveFrame& frame : seen) {
+    if (frame.time <= 0) return {};
+    if (!oldest || frame.time < *oldest) oldest = frame.time;
+  }
+  return oldest;
+}
+
+/// How old the scan is, and until when the motion holds.
+void DigCycleSession::State::add_age(CyclePlan& answer) const {
+  const Time scanned = scan_time();
+  if (!scanned || !now) return;
+  answer.scan_age = std::max(0.0, seconds(*scanned, *now));
+  if (*answer.scan_age > settings.oldest_scan) {
+    answer.warnings.emplace_back(WarningCode::scan_old,
+                                 "the scan of the ground is " + readable(*answer.scan_age, 3) +
+                                     " s old: people and machines may have moved since");
+  }
+  if (!answer.stamp) return;
+  constexpr double longest = 1e9;
+  answer.stamp->scanned = scanned;
+  answer.stamp->expires =
+      *scanned + static_cast<std::int64_t>(1e9 * std::min(longest, settings.oldest_scan));
 }
 
 std::string DigCycleSession::State::early_text() const {
@@ -433,6 +466,7 @@ void DigCycleSession::start_dig(Time time) {
   state.recent.clear();
   state.after.clear();
   state.driven = std::exchange(state.planned, std::nullopt);
+  state.plan_id.clear();
   state.stage = CycleStage::digging;
   state.early = 0;
   state.marked.reset();
@@ -537,21 +571,55 @@ CyclePlan DigCycleSession::plan(Time time) {
     answer.warnings.insert(answer.warnings.end(), around.warnings.begin(), around.warnings.end());
     state.add_motion(around.terrain, answer);
   }
+  if (scan) state.add_age(answer);
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });
   state.planned = answer.plan.dig;
+  state.plan_id = answer.stamp ? answer.stamp->id : "";
   return answer;
 }
 
 void DigCycleSession::confirm_start(CyclePlan& plan, Time time) {
   if (time) state_->now = time;
-  if (!plan.posture_known || plan.motion.points.empty()) return;
-  const std::string problem = state_->start_problem(plan.motion);
-  if (problem.empty()) return;
-  plan.trustworthy = false;
-  plan.warnings.emplace_back(WarningCode::start_left,
-                             "the machine may stand where the motion does not begin: " + problem);
+  if (plan.motion.points.empty()) return;
+  std::vector<Warning> doubts = doubts_of(plan.stamp);
+  if (const std::string problem = plan.posture_known ? state_->start_problem(plan.motion) : "";
+      !problem.empty()) {
+    doubts.emplace_back(WarningCode::start_left,
+                        "the machine may stand where the motion does not begin: " + problem);
+  }
+  if (!doubts.empty()) plan.trustworthy = false;
+  plan.warnings.insert(plan.warnings.end(), doubts.begin(), doubts.end());
+}
+
+std::vector<Warning> DigCycleSession::doubts_of(const std::optional<PlanStamp>& stamp, Time time) {
+  const State& state = *state_;
+  if (time) state_->now = time;
+  constexpr double same = 1e-6;  // of a pose that was written and read
+  std::vector<Warning> doubts;
+  const auto refuse = [&](WarningCode code, const std::string& why) {
+    doubts.emplace_back(code, "the motion is not to be driven: " + why);
+  };
+  if (!stamp) {
+    refuse(WarningCode::foreign_plan, "it does not state its plan");
+    return doubts;
+  }
+  const Eigen::Isometry3d pose = Eigen::Isometry3d(state.settings.site_from_scan).inverse();
+  if (stamp->id != state.plan_id) {
+    refuse(WarningCode::foreign_plan,
+           "it is of plan " + in_quotes(stamp->id) +
+               (state.plan_id.empty() ? ", and none is waiting here"
+                                      : ", the last plan here is " + state.plan_id));
+  } else if (!stamp->pose.isApprox(pose, same)) {
+    refuse(WarningCode::foreign_plan, "the machine stood elsewhere when it was planned");
+  }
+  if (stamp->expires && state.now && *state.now > *stamp->expires) {
+    refuse(
+        WarningCode::stale_plan,
+        "its scan became too old " + readable(seconds(*stamp->expires, *state.now), 3) + " s ago");
+  }
+  return doubts;
 }
 
 }  // namespace excavplan

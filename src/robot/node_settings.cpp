@@ -35,6 +35,8 @@ void check_numbers(const NodeParameters& given) {
   require_in(parameter("scans"), given.scans, 1.0, DigCycleSession::most_scans);
   require(given.joint_age_seconds > 0.0, parameter("joint_age_seconds"), given.joint_age_seconds,
           "above 0");
+  require(given.scan_age_seconds > 0.0, parameter("scan_age_seconds"), given.scan_age_seconds,
+          "above 0");
   naming("density_percent", [&] { require_density({given.density_percent, 0.0}); });
   naming("density_sd_percent", [&] { require_density({0.0, given.density_sd_percent}); });
   const auto check_motion = [](const std::string& name, double MotionOptions::*field,
@@ -99,6 +101,7 @@ NodeSettings node_settings(const NodeParameters& given) {
           parameter("level_ground") + ": not with surroundings, which show whether it is");
   naming("surroundings", [&] { set_surroundings(given.surroundings, settings); });
   settings.oldest_joints = given.joint_age_seconds;
+  settings.oldest_scan = given.scan_age_seconds;
   if (const auto seconds = known(given.search_seconds)) settings.search_seconds = *seconds;
   settings.whole_cycle = given.whole_cycle;
   settings.motion.rate = given.rate_hz;

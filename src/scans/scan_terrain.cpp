@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
@@ -13,6 +14,8 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
+#include "scans/scan_agreement.hpp"
+#include "scans/scan_obstacles.hpp"
 #include "scans/scan_reading.hpp"
 
 namespace excavplan {
@@ -25,15 +28,14 @@ constexpr std::size_t fewest_points = 10;  // that make a ground; ours
 
 // Of ground that nothing may hit [m]; ours: a wall may stand between points that are further apart.
 constexpr double motion_cell = 0.25, motion_farthest = 0.5;
+constexpr double above_reach = 0.5;  // what is higher is in nobody's way
 
-// Of two scans of the same ground; ours.
-constexpr double same_height = 0.15;         // [m]
-constexpr double least_same = 0.2;           // of the cells that both know
-constexpr Eigen::Index fewest_common = 100;  // cells that are compared
+constexpr double ceiling = 20.0;  // of what may stand in the way of a dig; ours [m]
 
-/// Points of the extent, with a metre around it to interpolate from, all as if seen from one place.
-Scan cropped(const Scan& scan, const Rectangle& extent) {
-  constexpr double around = 1.0;
+constexpr double interpolated = 1.0, shaped = 3.5;  // around an extent; ours [m]
+
+/// Points of the extent, with so much around it, all as if seen from one place.
+Scan cropped(const Scan& scan, const Rectangle& extent, double around) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   const Rectangle area = scan.area.value_or(Rectangle{-endless, -endless, endless, endless});
   Scan inside = scan;
@@ -71,10 +73,18 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
 }
 
 /// The second where the first is unknown.
-Terrain filled_from(const Terrain& first, const Terrain& second) {
-  HeightMap ground = first.surface();
-  ground.z = ground.z.isFinite().select(ground.z, second.surface().z).eval();
-  return undisturbed(ground);
+HeightMap filled_from(const HeightMap& first, const HeightMap& second) {
+  HeightMap ground = first;
+  ground.z = ground.z.isFinite().select(ground.z, second.z).eval();
+  return ground;
+}
+
+/// Ground with what stands on it, below which none is seen.
+Terrain terrain_with(HeightMap ground, const Eigen::ArrayXXd& obstacles) {
+  ground.z = obstacles.isFinite().select(std::nan(""), ground.z).eval();
+  Terrain terrain = undisturbed(ground);
+  if (obstacles.isFinite().any()) terrain.obstacles = obstacles;
+  return terrain;
 }
 
 /// What a scan shows of an extent.
@@ -85,7 +95,7 @@ struct Seen {
 };
 
 Seen seen_of(const Scan& scan, const Rectangle& extent) {
-  const Scan near = cropped(scan, extent);
+  const Scan near = cropped(scan, extent, interpolated);
   const CloudSummary seen = is_empty(*near.area) ? CloudSummary{} : summarise(near);
   require_points(scan, seen.finite_points, extent);
   require_width(scan, *seen.extent);
@@ -95,12 +105,27 @@ Seen seen_of(const Scan& scan, const Rectangle& extent) {
 /// Two points lie in such a cell [m].
 double cell_of(const Seen& seen) { return std::sqrt(2.0 / seen.density); }
 
-Terrain ground_of(const Seen& seen, double raster_cell, double widest_gap, const Rectangle& extent,
-                  double cell_size) {
+HeightMap ground_of(const Seen& seen, double raster_cell, double widest_gap,
+                    const Rectangle& extent, double cell_size) {
   RasterOptions raster;
   raster.cell_size = raster_cell;
   const HeightMap map = survey_surface(seen.near, seen.extent, raster).height;
-  return undisturbed(resampled(map, extent, cell_size, widest_gap));
+  return resampled(map, extent, cell_size, widest_gap);
+}
+
+/// Where the machine stands that digs on an extent.
+Rectangle behind(const Rectangle& extent) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  return {-endless, -endless, extent.x_min, endless};
+}
+
+/// Of a machine where it stands, facing the dig: tracks and upper structure.
+Rectangle own_place(const Machine& machine) {
+  constexpr double rounded = 0.05;  // of returns of its sides; ours [m]
+  const double front = std::max(0.0, machine.track_front) + rounded;
+  const double rear = std::max(front, machine.tail_swing_radius() + rounded);
+  const double half = 0.5 * machine.undercarriage_width() + rounded;
+  return {-rear, -half, front, half};
 }
 
 }  // namespace
@@ -111,8 +136,11 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   const Seen seen = seen_of(scan, extent);
   const double cell = std::max(cell_size, cell_of(seen));
   const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
-  ScannedTerrain result{ground_of(seen, cell, widest_gap, extent, cell_size), scan.doubts};
-  if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
+  const HeightMap ground = ground_of(seen, cell, widest_gap, extent, cell_size);
+  const SeenTops tops =
+      seen_tops(cropped(scan, extent, shaped), ground, {cell_of(seen), ceiling, behind(extent)});
+  ScannedTerrain result{terrain_with(ground, tops.obstacles), scan.doubts};
+  if (const double unseen = unseen_area(ground); unseen > 0.0) {
     result.warnings.emplace_back(WarningCode::unseen_ground,
                                  name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
                                      " m2 of the ground within reach, in gaps wider than " +
@@ -137,11 +165,14 @@ ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine)
     const double widest_gap = std::clamp(motion_farthest - 2.0 * cell, 0.0, widest_filled);
     return ground_of(seen, cell, widest_gap, extent, cell_size);
   };
-  ScannedTerrain result{ground_on(std::min(cell_of(seen), motion_cell)), scan.doubts};
+  HeightMap ground = ground_on(std::min(cell_of(seen), motion_cell));
   // Lines of points are dense, and yet apart.
-  const bool is_whole = result.terrain.bank.z.isFinite().all();
-  if (!is_whole) result.terrain = filled_from(result.terrain, ground_on(motion_cell));
-  return result;
+  if (!ground.z.isFinite().all()) ground = filled_from(ground, ground_on(motion_cell));
+  const double ceiling = machine.boom_pin.y() + machine.full_length() + above_reach;
+  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
+                                  {cell_of(seen), ceiling, own_place(machine)});
+  ground.z = (tops.highest > ground.z || ground.z.isNaN()).select(tops.highest, ground.z).eval();
+  return {terrain_with(std::move(ground), tops.obstacles), scan.doubts};
 }
 
 HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
@@ -155,23 +186,21 @@ HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
 }
 
 ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier) {
-  const HeightMap ground = present.surface();
-  const HeightMap around = earlier.surface();
+  const HeightMap ground = present.surface(), around = earlier.surface();
   require(same_grid(ground, around), "surroundings: must have the cells of the present ground");
-  const auto both = ground.z.isFinite() && around.z.isFinite();
-  const Eigen::Index common = both.count();
-  const Eigen::Index same = (both && (ground.z - around.z).abs() <= same_height).count();
+  const HeightMap now = present.highest(), before = earlier.highest();
   std::vector<Warning> warnings;
-  if (common >= fewest_common &&
-      static_cast<double>(same) < least_same * static_cast<double>(common)) {
-    warnings.emplace_back(
-        WarningCode::surroundings_differ,
-        "of the ground that the present scan and that of the surroundings both "
-        "show only " +
-            readable(100.0 * static_cast<double>(same) / static_cast<double>(common), 2) +
-            " % has the same height: is one in another frame?");
+  if (const auto why = disagreement(now, before)) {
+    warnings.emplace_back(WarningCode::surroundings_differ, *why + ": is one in another frame?");
   }
-  return {filled_from(present, earlier), std::move(warnings)};
+  // What stood where now is ground has gone.
+  const auto is_unknown = now.z.isNaN();
+  Eigen::ArrayXXd obstacles = present.obstacles;
+  if (obstacles.size() == 0) obstacles = Eigen::ArrayXXd::Constant(now.z.rows(), now.z.cols(), NAN);
+  if (earlier.obstacles.size() > 0) {
+    obstacles = is_unknown.select(earlier.obstacles, obstacles).eval();
+  }
+  return {terrain_with(filled_from(ground, around), obstacles), std::move(warnings)};
 }
 
 }  // namespace excavplan

@@ -65,6 +65,7 @@ std::vector<test::Member<Machine>> machine_members() {
       {"arm_length", [](Machine& m) -> double& { return m.arm_length; }},
       {"bucket_length", [](Machine& m) -> double& { return m.bucket_length; }},
       {"track_front", [](Machine& m) -> double& { return m.track_front; }},
+      {"tail_radius", [](Machine& m) -> double& { return *m.tail_radius; }},
       {"track_width", [](Machine& m) -> double& { return *m.track_width; }},
       {"profile[0].x", [](Machine& m) -> double& { return m.bucket.profile[0].x(); }},
       {"profile[2].y", [](Machine& m) -> double& { return m.bucket.profile[2].y(); }},

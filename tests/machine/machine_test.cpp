@@ -448,6 +448,17 @@ TEST(MachineFile, MayStateTheWidthOfTheTracks) {
   std::remove(path.c_str());
 }
 
+TEST(MachineFile, MayStateTheRadiusOfTheTail) {
+  Machine machine = zx120();
+  EXPECT_EQ(machine.tail_swing_radius(), 2.13);
+  machine.tail_radius.reset();
+  EXPECT_NEAR(machine.tail_swing_radius(), 1.35 * 1.8, 1e-12);
+  EXPECT_EQ(fingerprint(machine), fingerprint(zx120())) << "it affects no dig";
+  EXPECT_EQ(set("/geometry/tail_radius_m", 2.4), "no error");
+  EXPECT_EQ(set("/geometry/tail_radius_m", 0.0),
+            "geometry.tail_radius_m: is 0, must be above 0 and at most 100");
+}
+
 TEST(MachineFile, MayNameSomeOfTheRobotsJoints) {
   json file = shipped_json();
   file["robot_joints"] = {{"boom", {{"name", "b"}}}, {"arm", {{"sign", -1}}}};

@@ -883,6 +883,23 @@ TEST(Trajectory, JsonIsReadBackExactly) {
   }
 }
 
+TEST(Trajectory, JsonCarriesThePlanItsPoseAndItsExpiry) {
+  const test::TemporaryFolder folder;
+  Trajectory written = with_approach();
+  EXPECT_FALSE(load_trajectory(folder.write("t.json", to_json(written))).plan);
+  written.plan = PlanStamp{"0123456789abcdef"};
+  written.plan->pose.translate(Eigen::Vector3d(3.0, -2.0, 0.5));
+  written.plan->pose.rotate(Eigen::AngleAxisd(2.0, Eigen::Vector3d(0.1, -0.2, 1.0).normalized()));
+  written.plan->expires = 1'790'000'060'500'000'000;
+  const Trajectory read = load_trajectory(folder.write("t.json", to_json(written)));
+  ASSERT_TRUE(read.plan);
+  EXPECT_EQ(read.plan->id, "0123456789abcdef");
+  EXPECT_TRUE(read.plan->pose.isApprox(written.plan->pose, 1e-12));
+  EXPECT_FALSE(read.plan->scanned);
+  ASSERT_TRUE(read.plan->expires);
+  EXPECT_NEAR(1e-9 * static_cast<double>(*read.plan->expires - *written.plan->expires), 0.0, 1e-6);
+}
+
 TEST(Trajectory, JsonNamesKeyValueAndRuleOfWhatItRefuses) {
   const auto complaint = [](const std::function<void(nlohmann::json&)>& change) {
     nlohmann::json json = nlohmann::json::parse(to_json(with_approach()));

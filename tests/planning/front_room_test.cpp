@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include "planning/front_room.hpp"
+#include "ground/obstacles.hpp"
 
 #include <cmath>
 #include <string>
@@ -117,14 +118,27 @@ TEST_F(FrontRoomOf, NoPlanGoesThroughAWall) {
   EXPECT_FALSE(planned(with_block(6.0, 2.9, 3.1)).dig);
 }
 
-TEST_F(FrontRoomOf, APostInTheStripOfTheBucketEndsTrust) {
-  const DigPlan plan = planned(with_block(0.9, 4.6, 4.8, 0.1, -0.1));
-  ASSERT_TRUE(plan.dig);
-  const bool passed = plan.path.start_x > 4.6;
-  EXPECT_EQ(warns(plan, "obstacle_in_strip"), passed);
-  EXPECT_NE(plan.trustworthy, passed);
-  const DigPlan low = planned(with_block(0.3, 4.6, 4.8, 0.1, -0.1));
-  EXPECT_FALSE(warns(low, "obstacle_in_strip"));
+/// However wide it is, a box that stands in the strip of the bucket is neither dug nor touched.
+TEST_F(FrontRoomOf, NoDigGoesThroughWhatStandsInTheStrip) {
+  for (const double half : {0.1, 0.35, 0.8}) {
+    const DigPlan plan = planned(with_block(0.9, 4.6, 4.8, half, -half));
+    EXPECT_TRUE(warns(plan, "obstacle_in_strip"));
+    if (!plan.dig) continue;
+    EXPECT_TRUE(plan.trustworthy);
+    const Rectangle strip = swept_strip(machine_, plan.path);
+    EXPECT_TRUE(strip.x_max < 4.5 || strip.x_min > 4.9) << strip.x_min << " .. " << strip.x_max;
+    EXPECT_GT(lowest_at(plan.path, 4.55, 4.85), 1.0);
+  }
+  EXPECT_FALSE(warns(planned(with_block(0.3, 4.6, 4.8, 0.1, -0.1)), "obstacle_in_strip"));
+}
+
+/// The bucket too keeps clear of what stands beside the strip.
+TEST_F(FrontRoomOf, TheBucketKeepsClearOfAPostBesideTheStrip) {
+  const auto beside = [&](double y) {
+    return with_obstacles(with_block(2.0, 5.0, 5.2, y + 0.1, y));
+  };
+  EXPECT_TRUE(std::holds_alternative<DigPath>(laid(beside(0.55))));
+  EXPECT_TRUE(std::holds_alternative<Infeasible>(laid(beside(0.4))));
 }
 
 TEST_F(FrontRoomOf, AWallBesideAPitThatIsDugDeeperIsNoObstacle) {

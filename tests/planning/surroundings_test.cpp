@@ -231,8 +231,9 @@ double most_tipped(const Way& way) {
 }
 
 TEST(Surroundings, AFullBucketKeepsItsAttitudeOnADetour) {
-  const Terrain windrows = terrain_of(
-      [](double, double y) { return std::abs(y) > 0.8 && std::abs(y) < 1.6 ? 1.8 : 0.0; });
+  const Terrain windrows = terrain_of([](double x, double y) {
+    return x > 2.4 && std::abs(y) > 0.8 && std::abs(y) < 1.6 ? 1.8 : 0.0;
+  });
   const Way way = std::get<Way>(cycle_over(windrows, 2.0));
   double highest = 0.0;
   for (const WayPose& pose : way.poses) {
@@ -242,6 +243,51 @@ TEST(Surroundings, AFullBucketKeepsItsAttitudeOnADetour) {
   EXPECT_GT(highest, -straight.poses.back().joints[0] + 0.2) << "a detour";
   EXPECT_LT(most_tipped(way), 1e-9);
   EXPECT_FALSE(has(way, "payload_tips"));
+}
+
+/// A wall that the front does not reach, beside or behind the tracks.
+TEST(Surroundings, TheTailKeepsClearOfWhatStandsBesideTheTracks) {
+  const auto with_wall = [](double x, double y, double height) {
+    Terrain ground = level_swing_ground(zx120());
+    ground.obstacles = ground.bank.z * std::nan("");
+    for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+      for (Eigen::Index row = 0; row < ground.bank.z.rows(); ++row) {
+        const double dx = ground.bank.x(col) - x, dy = ground.bank.y(row) - y;
+        if (std::hypot(dx, dy) < 0.15) ground.obstacles(row, col) = height;
+      }
+    }
+    return ground;
+  };
+  const auto blocked = [&](double x, double y, double height) {
+    const auto laid = cycle_over(with_wall(x, y, height), 2.0);
+    const auto* stop = std::get_if<BlockedWay>(&laid);
+    EXPECT_TRUE(stop == nullptr || stop->message.find("obstacle") != std::string::npos);
+    return stop != nullptr;
+  };
+  EXPECT_TRUE(blocked(-0.3, -1.8, 1.5)) << "the tail comes there on a swing to the left";
+  EXPECT_TRUE(blocked(-1.7, -1.45, 1.5));
+  EXPECT_FALSE(blocked(-1.7, -1.45, 0.6)) << "as low as the tracks";
+  EXPECT_FALSE(blocked(-0.3, -2.6, 3.0));
+  EXPECT_FALSE(blocked(-1.9, 1.75, 3.0)) << "the tail goes away from there";
+}
+
+TEST(Surroundings, WhatStandsInTheSwingIsPassedAboveOrBlocks) {
+  const auto with_post = [](double height) {
+    Terrain ground = level_swing_ground(zx120());
+    ground.obstacles = ground.bank.z * std::nan("");
+    for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+      for (Eigen::Index row = 0; row < ground.bank.z.rows(); ++row) {
+        if (std::hypot(ground.bank.x(col) - 3.5, ground.bank.y(row) - 3.5) > 0.2) continue;
+        ground.obstacles(row, col) = height;
+        ground.bank.z(row, col) = std::nan("");
+      }
+    }
+    return ground;
+  };
+  const auto over = cycle_over(with_post(1.5), 2.0);
+  ASSERT_TRUE(std::holds_alternative<Way>(over));
+  EXPECT_TRUE(std::get<Way>(over).warnings.empty());
+  EXPECT_TRUE(std::holds_alternative<BlockedWay>(cycle_over(with_post(9.0), 2.0)));
 }
 
 TEST(Surroundings, ABucketThatCannotKeepItsAttitudeIsToldOf) {
@@ -314,7 +360,7 @@ TEST(Surroundings, TheTracksAreAsWideAsTheMachineFileSays) {
 TEST(Surroundings, UnseenGroundOnTheWayEndsTrust) {
   const Way way = std::get<Way>(cycle_over(level_planning_ground(zx120())));
   ASSERT_TRUE(has(way, "unseen_way"));
-  EXPECT_NE(way.warnings[0].message.find(" m2 of the ground that arm and bucket pass over"),
+  EXPECT_NE(way.warnings[0].message.find(" m2 of the ground that the front passes over"),
             std::string::npos)
       << way.warnings[0].message;
   EXPECT_TRUE(std::get<Way>(cycle_over(level_swing_ground(zx120()))).warnings.empty());
@@ -335,7 +381,7 @@ TEST(Surroundings, GroundThatFineCellsKnowInPartDoesNotBecomeLower) {
     const auto col = static_cast<Eigen::Index>((5.2 - ground.origin.x()) / ground.cell_size);
     const Eigen::Index row = ground.z.rows() / 2;
     ground.z(row, col) = height;
-    Surroundings around(machine, ground);
+    Surroundings around(machine, undisturbed(ground));
     HeightMap after;
     after.cell_size = 0.25 * ground.cell_size;
     after.origin = ground.origin +

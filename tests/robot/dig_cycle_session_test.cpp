@@ -553,6 +553,57 @@ TEST(DigCycleSession, AMachineThatMovesOrMayMoveIsNotTrusted) {
   EXPECT_TRUE(has(unknown.warnings, "not_standing"));
 }
 
+/// People and machines move: a scan holds for a minute, and a motion no longer.
+TEST(DigCycleSession, AScanThatIsOldEndsTrustAndItsMotionExpires) {
+  DigCycleSettings settings = settings_of();
+  settings.density = GroundDensity(40.0, 2.0);
+  DigCycleSession session(settings);
+  send(session, cloud_bytes(now, "site", ground()));
+  const CyclePlan young = session.plan(now + 59 * second);
+  EXPECT_FALSE(has(young.warnings, "scan_old"));
+  ASSERT_TRUE(young.scan_age && young.stamp);
+  EXPECT_NEAR(*young.scan_age, 59.0, 1e-6);
+  EXPECT_EQ(young.stamp->scanned, now);
+  EXPECT_EQ(young.stamp->expires, now + 60 * second);
+  const auto confirmed = [&](std::int64_t time) {
+    CyclePlan plan = young;
+    session.confirm_start(plan, time);
+    return plan;
+  };
+  EXPECT_FALSE(has(confirmed(now + 60 * second).warnings, "stale_plan"));
+  const CyclePlan stale = confirmed(now + 61 * second);
+  EXPECT_TRUE(has(stale.warnings, "stale_plan"));
+  EXPECT_FALSE(stale.trustworthy);
+  const CyclePlan old = session.plan(now + 61 * second);
+  EXPECT_TRUE(has(old.warnings, "scan_old"));
+  EXPECT_FALSE(old.trustworthy);
+  EXPECT_NE(to_json(old).find("\"scan_age_s\""), std::string::npos);
+}
+
+/// Of a motion of a file, too.
+TEST(DigCycleSession, AMotionOfAnotherPlanIsRefused) {
+  DigCycleSettings settings = settings_of();
+  settings.density = GroundDensity(40.0, 2.0);
+  settings.site_from_scan(0, 3) = 0.5;
+  DigCycleSession session(settings);
+  send(session, cloud_bytes(now, "site", ground()));
+  const CyclePlan plan = session.plan(now);
+  const auto refused = [&](const std::optional<PlanStamp>& stamp) {
+    return has(session.doubts_of(stamp, now), "foreign_plan");
+  };
+  ASSERT_TRUE(plan.stamp);
+  EXPECT_FALSE(refused(plan.stamp));
+  EXPECT_TRUE(refused(std::nullopt));
+  PlanStamp other = *plan.stamp;
+  other.id.back() = other.id.back() == '0' ? '1' : '0';
+  EXPECT_TRUE(refused(other));
+  PlanStamp elsewhere = *plan.stamp;
+  elsewhere.pose.translation().x() += 0.2;
+  EXPECT_TRUE(refused(elsewhere));
+  session.start_dig();
+  EXPECT_TRUE(refused(plan.stamp)) << "its dig has begun";
+}
+
 TEST(DigCycleSession, AMotionIsNotTrustedOnceTheMachineLeftItsStart) {
   DigCycleSettings settings = settings_of();
   settings.level_ground = true;

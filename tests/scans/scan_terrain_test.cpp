@@ -133,7 +133,7 @@ TEST(SwingTerrain, OneInAnotherFrameIsToldByTheGroundThatBothSee) {
   ASSERT_EQ(codes(low), Codes{"surroundings_differ"});
   EXPECT_TRUE(low.warnings[0].ends_trust);
   Terrain dug = present;
-  dug.bank.z.leftCols(2 * dug.bank.z.cols() / 3) -= 1.0;
+  dug.bank.z.leftCols(dug.bank.z.cols() / 3) -= 1.0;
   EXPECT_EQ(codes(with_surroundings(dug, seen(level(0.1, 0.0, nothing)))), Codes{})
       << "ground that was dug since";
 }

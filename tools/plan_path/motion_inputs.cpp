@@ -16,6 +16,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "inputs/found_pose.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -133,8 +134,15 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   auto motion = plan_motion(
       planned.machine, planned.ground.ground, planned.plan,
       {joints_of(inputs, planned.machine), inputs.whole_cycle, planned.objective}, inputs.options);
+  if (auto* made = std::get_if<Trajectory>(&motion)) {
+    if (made->plan && planned.terrain.frame) {
+      const Eigen::Isometry3d site_from_scan(
+          frame_named("--terrain-frame", *planned.terrain.frame));
+      made->plan->pose = site_from_scan.inverse();
+    }
+    return std::move(*made);
+  }
   const auto* stop = std::get_if<BlockedWay>(&motion);
-  if (stop == nullptr) return std::get<Trajectory>(std::move(motion));
   Trajectory none = {planned.machine.name, {}, planned.machine.robot_joints};
   none.warnings = {{WarningCode::no_motion,
                     "the plan has no motion: the ground is in the way: " + stop->message}};
@@ -245,6 +253,7 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
                                 {"rate_hz", inputs.options.rate},
                                 {"duration_s", motion.duration()},
                                 {"joint_names", names_of(motion.robot_joints)}};
+  if (motion.plan) outcome.json["trajectory"]["plan_id"] = motion.plan->id;
   outcome.lines.push_back("trajectory   " + readable(motion.duration()) + " s, " +
                           std::to_string(motion.points.size()) + " points of " +
                           names_of(motion.robot_joints));

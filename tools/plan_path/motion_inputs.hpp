@@ -45,6 +45,7 @@ struct PlannedMotion {
   const Site& ground;  ///< motion_ground(): the dig's ground is a strip of it
   const DigPlan& plan;
   const DigObjective& objective;
+  const TerrainInput& terrain;
 };
 
 /// That of the dig alone, for pages: the points of a file without present joints or whole cycle.

@@ -11,8 +11,8 @@
 
 namespace excavplan {
 
-/// Ground in two layers on one grid. Unknown cells are NaN in `bank`; no soil enters or leaves
-/// them.
+/// Ground in two layers on one grid, and what stands on it. Unknown cells are NaN in `bank`; no
+/// soil enters or leaves them.
 struct Terrain {
   HeightMap bank;         ///< top of the undisturbed soil [m]
   Eigen::ArrayXXd loose;  ///< thickness of the loose soil on it [m], >= 0, same size
@@ -23,9 +23,15 @@ struct Terrain {
   /// Void ratio of the loose layer, in the soil's void_ratio_min .. void_ratio_loose [-]. Empty:
   /// void_ratio_loose everywhere, to which all soil swells that is dug or slides.
   Eigen::ArrayXXd loose_void_ratio{};
+  /// Top of what stands on the ground or hangs over it and is no soil: a wall, a machine, a person,
+  /// a wire [m]; NaN where nothing does. The ground below is not seen: `bank` is NaN. A machine
+  /// keeps clear of all that is below the top. Empty: nothing anywhere.
+  Eigen::ArrayXXd obstacles{};
 
   /// bank + loose. @throws Error (bad_input) if they differ in size
   HeightMap surface() const;
+  /// The surface, and where something stands its top. @throws Error (bad_input) likewise
+  HeightMap highest() const;
 };
 
 /// Undisturbed ground with this surface and no loose soil.

@@ -98,6 +98,7 @@ struct Machine {
   /// On the site, not of the file; coordinates of a machine that does not stand level, and of all
   /// ground that it digs, are those of its own frame: z along the swing axis, 0 under the tracks.
   Attitude attitude = {};
+  std::optional<double> tail_radius;  ///< from the swing axis [m]; nothing: tail_swing_radius()
   /// Takes points from the root frame of the robot's URDF to the site frame: a shift and a turn
   /// about z. Affects no dig.
   Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
@@ -112,6 +113,9 @@ struct Machine {
   /// Unit vector against gravity in the boom plane, as far as it lies in it: (0, 1) if level.
   /// @param swung  of the upper structure to the left [rad]
   Eigen::Vector2d up(double swung = 0.0) const;
+  /// Of the counterweight about the swing axis [m]: tail_radius, without it 1.35 times track_front;
+  /// ours, above the 1.18 of the zx120.
+  double tail_swing_radius() const;
   /// Angle between bucket floor and the line from tip to bucket pin [rad]; Error without a profile.
   double beta() const;
 };

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/base/warning.hpp>
@@ -36,6 +40,18 @@ struct TrajectoryPoint {
   SwingState swing;  ///< at rest at 0 in a trajectory of time_dig_path()
 };
 
+/// Which plan a motion is of, where its machine stands, and for how long it holds.
+struct PlanStamp {
+  std::string id;  ///< 16 hexadecimal digits that depend on machine, ground, dig and motion
+  /// Puts the frame of the machine (origin on the swing axis at ground level) into that of the scan
+  /// that the plan was made on: a rigid motion.
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  /// By the clock of the messages [ns]: when the scan was measured and until when people and
+  /// machines in it are taken to be where it shows them; nothing: the scan does not tell.
+  std::optional<std::int64_t> scanned = {};
+  std::optional<std::int64_t> expires = {};  ///< likewise
+};
+
 /// A dig path or a way (motion.hpp) with its times.
 struct Trajectory {
   std::string machine;                  ///< its name
@@ -44,6 +60,7 @@ struct Trajectory {
   RobotJoints robot_joints = Machine{}.robot_joints;
   /// Of plan_motion(): Way::warnings, motion_overload, motion_tips. Not in files.
   std::vector<Warning> warnings = {};
+  std::optional<PlanStamp> plan = {};  ///< nothing: it is not known of which plan it is
   /// Of all points [s].
   double duration() const { return points.empty() ? 0.0 : points.back().time; }
   double dig_duration() const;  ///< of penetrate, drag and scoop [s]

@@ -47,11 +47,11 @@ void check(const Machine& machine, const CycleWayOptions& options);
 /// to be; where that leads within 0.1 m of the ground or of the undercarriage, the boom rises first
 /// and comes down last, and a full bucket keeps its attitude. From the dig on, the ground is that
 /// after it. Behind the front of the tracks and within the circle through their corners stands the
-/// machine itself: no ground is looked at there.
+/// machine itself: no ground is looked at there, but obstacles are, for its tail too.
 ///
 /// Ground that is unknown or off the map counts as the plane of the tracks. Warnings, both of which
-/// end trust: unseen_way where arm and bucket pass over such ground, payload_tips where a full
-/// bucket cannot keep its attitude, as its joint ends.
+/// end trust: unseen_way where boom, arm and bucket pass over such ground, payload_tips where a
+/// full bucket cannot keep its attitude, as its joint ends.
 ///
 /// @param ground  before the dig: all that the machine can pass over, swing_extent()
 /// @return the way, or what blocks it

@@ -12,7 +12,7 @@ namespace excavplan {
 /// The motion of a planned dig for a controller: way_of_cycle() of its path, with its torques, its
 /// payload and the ground that it leaves, timed by time_way(). Its warnings are those of the way,
 /// and say where off the dig a joint lacks torque for links and payload (motion_overload) or the
-/// machine tips (motion_tips).
+/// machine tips (motion_tips). It is stamped with an id of its plan, in the frame of the machine.
 /// @param ground  before the dig: that of swing_extent(); the part that was planned on is too small
 /// @return the motion, without points if the plan has no dig; or what blocks the way
 /// @throws Error (bad_input) as way_of_cycle() and time_way(), or if the plan is of another machine

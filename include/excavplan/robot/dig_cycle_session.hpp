@@ -46,14 +46,19 @@ struct CyclePlan {
   bool density_is_stated = true;  ///< that of the settings: no dig gave one to trust
   bool previous_density = false;  ///< the last estimate was not to be trusted and is not used
   JointMotion motion;             ///< from where the joints stand; without points if there is none
-  bool posture_known = false;     ///< of the machine; if not the motion begins above the dig
-  bool trustworthy = true;        ///< false after a warning that ends trust
+  /// Of the motion: which plan it is of, on a scan of when; nothing: there is no motion.
+  std::optional<PlanStamp> stamp;
+  /// Of the scan that it is on, when it was planned [s]; nothing: its messages do not tell.
+  std::optional<double> scan_age;
+  bool posture_known = false;  ///< of the machine; if not the motion begins above the dig
+  bool trustworthy = true;     ///< false after a warning that ends trust
   /// Of the settings, of the plan, of the ground, and previous_density (the last estimate failed or
   /// was not trustworthy), level_ground * (no scan yet, unless DigCycleSettings::level_ground),
   /// ground_before_dig * (no scan since the last dig began), posture_unknown (the motion begins
   /// above the dig), not_standing * (a joint turned within the last half second, or its states do
   /// not reach back so far), search_stopped (by its time), no_motion * (the ground is in the way,
-  /// or a joint stands beyond its limits), and start_left * of confirm_start().
+  /// or a joint stands beyond its limits), scan_old * (DigCycleSettings::oldest_scan), and
+  /// start_left *, stale_plan * and foreign_plan * of confirm_start().
   std::vector<Warning> warnings;
 };
 
@@ -99,9 +104,15 @@ class DigCycleSession {
   /// @throws Error as plan_dig() and terrain_from_scan()
   CyclePlan plan(std::optional<std::int64_t> time = {});
   /// To be called when the messages that came while the session planned have been taken, before
-  /// the motion is sent: adds start_left * if the machine may not stand where it begins.
+  /// the motion is sent: adds start_left * if the machine may not stand where it begins, and
+  /// doubts_of() its stamp.
   /// @param time  as of plan()
   void confirm_start(CyclePlan& plan, std::optional<std::int64_t> time = {});
+  /// Why a motion, of a file for instance, is not to be driven now: stale_plan * if its scan has
+  /// become too old, foreign_plan * if it is not of the last plan of this session, of which no dig
+  /// has begun, or of a machine that stood elsewhere. @param time  as of plan()
+  std::vector<Warning> doubts_of(const std::optional<PlanStamp>& stamp,
+                                 std::optional<std::int64_t> time = {});
 
  private:
   struct State;

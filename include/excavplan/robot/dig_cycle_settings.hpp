@@ -47,6 +47,9 @@ struct DigCycleSettings {
   /// A joint state that is older than this where it is needed is unknown: against the time of the
   /// plan, or the stamp of the points [s]; above 0.
   double oldest_joints = 1.0;
+  /// A scan older than this [s] when a plan is made, or its motion is to be sent, ends trust:
+  /// people and machines move. Above 0; ours.
+  double oldest_scan = 60.0;
   /// The dig that is scanned is the last plan of the session, if there is one, whose path corrects
   /// for the soil that fell back.
   bool digs_as_planned = true;

@@ -24,26 +24,27 @@ struct NodeParameters {
   /// Of a number: it is not given.
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  std::string machine = CycleSources{}.machine;            ///< as CycleSources::machine
-  std::string soil = CycleSources{}.soil;                  ///< as CycleSources::soil
-  std::string law;                                         ///< as CycleSources::law
-  std::string library;                                     ///< as CycleSources::library
-  std::string goal = CycleSources{}.goal;                  ///< as CycleSources::goal
-  double swing = none;                                     ///< as CycleSources::swing [rad]
-  double dump_height = none;                               ///< as CycleSources::dump_height [m]
-  double min_fill = none;                                  ///< as CycleSources::min_fill
-  double density_percent = 50.0;                           ///< of DigCycleSettings::density
-  double density_sd_percent = 25.0;                        ///< likewise
-  int scans = 5;                                           ///< as DigCycleSettings::scans
-  std::string site_frame;                                  ///< as DigCycleSettings::site_frame
-  std::string frame_file;                                  ///< of DigCycleSettings::site_from_scan
-  std::vector<std::string> joint_names;                    ///< four, or none: the machine's
-  bool machine_in_view = false;                            ///< as DigCycleSettings::machine_in_view
-  bool digs_as_planned = true;                             ///< as DigCycleSettings::digs_as_planned
-  bool level_ground = false;                               ///< as DigCycleSettings::level_ground
-  std::string surroundings;                                ///< cloud in the frame of the scans
-  double joint_age_seconds = 1.0;                          ///< as DigCycleSettings::oldest_joints
-  bool search = false;                                     ///< as CycleSources::search
+  std::string machine = CycleSources{}.machine;  ///< as CycleSources::machine
+  std::string soil = CycleSources{}.soil;        ///< as CycleSources::soil
+  std::string law;                               ///< as CycleSources::law
+  std::string library;                           ///< as CycleSources::library
+  std::string goal = CycleSources{}.goal;        ///< as CycleSources::goal
+  double swing = none;                           ///< as CycleSources::swing [rad]
+  double dump_height = none;                     ///< as CycleSources::dump_height [m]
+  double min_fill = none;                        ///< as CycleSources::min_fill
+  double density_percent = 50.0;                 ///< of DigCycleSettings::density
+  double density_sd_percent = 25.0;              ///< likewise
+  int scans = 5;                                 ///< as DigCycleSettings::scans
+  std::string site_frame;                        ///< as DigCycleSettings::site_frame
+  std::string frame_file;                        ///< of DigCycleSettings::site_from_scan
+  std::vector<std::string> joint_names;          ///< four, or none: the machine's
+  bool machine_in_view = false;                  ///< as DigCycleSettings::machine_in_view
+  bool digs_as_planned = true;                   ///< as DigCycleSettings::digs_as_planned
+  bool level_ground = false;                     ///< as DigCycleSettings::level_ground
+  std::string surroundings;                      ///< cloud in the frame of the scans
+  double joint_age_seconds = 1.0;                ///< as DigCycleSettings::oldest_joints
+  double scan_age_seconds = DigCycleSettings{}.oldest_scan;  ///< as DigCycleSettings::oldest_scan
+  bool search = false;                                       ///< as CycleSources::search
   double search_seconds = none;                            ///< as DigCycleSettings::search_seconds
   double speed_fraction = MotionOptions{}.speed_fraction;  ///< as MotionOptions::speed_fraction
   double rate_hz = MotionOptions{}.rate;                   ///< as MotionOptions::rate
@@ -65,6 +66,7 @@ void for_each_parameter(NodeParameters& all, const Use& use) {
   use("site_frame", all.site_frame), use("frame_file", all.frame_file);
   use("joint_names", all.joint_names);
   use("joint_age_seconds", all.joint_age_seconds);
+  use("scan_age_seconds", all.scan_age_seconds);
   use("machine_in_view", all.machine_in_view);
   use("digs_as_planned", all.digs_as_planned);
   use("level_ground", all.level_ground), use("surroundings", all.surroundings);

@@ -14,7 +14,8 @@ namespace excavplan {
 
 /// Ground to dig on as a scan shows it.
 struct ScannedTerrain {
-  Terrain terrain;                ///< undisturbed; unknown where the scan does not see
+  /// Undisturbed; unknown where the scan does not see, and below its obstacles.
+  Terrain terrain;
   std::vector<Warning> warnings;  ///< Scan::doubts, unseen_ground, sparse_terrain
 };
 
@@ -23,15 +24,19 @@ struct ScannedTerrain {
 ///
 /// A scan with fewer than 2 points per cell is rasterised on larger cells and interpolated
 /// (sparse_terrain). Gaps of up to 0.3 m or 3 cells are filled; what lies in wider ones stays
-/// unknown (unseen_ground), and no dig is planned there. Files are read several times and not held.
+/// unknown (unseen_ground), and no dig is planned there. What stands on the ground, to 3 m around
+/// the extent but not behind its x_min, is told by its shape (docs/methods.md#motion). Files are
+/// read several times and not held.
 ///
 /// @throws Error (bad_file) if a file cannot be read or changes meanwhile; FrameError with fewer
 /// than 10 points within a metre of the extent; (bad_input) unless cell_size > 0
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size);
 
 /// Ground that a motion must be clear of: swing_extent() in cells of usual_cell(). It is known
-/// between points at most 0.25 m apart, and not between points more than 0.5 m apart (ours). The
-/// warnings are Scan::doubts.
+/// between points at most 0.25 m apart, and not between points more than 0.5 m apart (ours), as
+/// high as its highest return, with all that stands on it or hangs over it. Returns of tracks and
+/// upper structure, facing the dig, and above the reach do not count. The warnings are
+/// Scan::doubts.
 /// @throws Error as terrain_from_scan()
 ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine);
 
@@ -41,9 +46,9 @@ ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine)
 HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine);
 
 /// The present ground, and where that is unknown an earlier one of the surroundings, both of
-/// swing_terrain_from_scan(). Warning surroundings_differ, which ends trust, if less than a fifth
-/// of what both know has the same height to 0.15 m (ours): the frame of one is wrong. Level ground
-/// shows neither shift nor turn.
+/// swing_terrain_from_scan(). Warning surroundings_differ, which ends trust, if they differ in
+/// height, shift, turn or relief where both are known (docs/methods.md#motion): the frame of one is
+/// wrong. Level ground with nothing on it shows neither shift nor turn.
 /// @throws Error (bad_input) if their cells differ
 ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier);
 

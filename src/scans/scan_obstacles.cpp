@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scans/scan_obstacles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ground/obstacles.hpp"
+#include "ground/window.hpp"
+#include "scans/scan_reading.hpp"
+#include "scans/scan_wires.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::ArrayXXd;
+using Eigen::Index;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Ours:
+constexpr double around = 3.0;         // the map, where the shape of things is seen too [m]
+constexpr double hidden = 0.3;         // behind a face: as wide as the gaps that are filled [m]
+constexpr double level = 0.15;         // of returns that are one level of a face [m]
+constexpr double next_ray = 1.2;       // times the distance of two levels: to the next above
+constexpr double most_above = 1.0;     // [m]
+constexpr double low = 0.3;            // above the ground: what is below is the ground [m]
+constexpr double largest_cell = 0.25;  // [m]
+constexpr double wire_width = 0.1;     // to both sides of the line of a wire [m]
+constexpr double widest_wire = 1.0;    // to which its direction is known [m]
+constexpr double above_wire = 1.0;     // [m]
+constexpr double nothing = -std::numeric_limits<double>::infinity();
+
+/// Cells of a map, of which each holds some of the cells of a finer one, and 3 m around these.
+class ObstacleCells {
+ public:
+  ObstacleCells(const HeightMap& grid, double spacing) {
+    const double wanted = std::min(std::max(spacing, grid.cell_size), largest_cell);
+    parts_ = std::max<Index>(1, static_cast<Index>(std::ceil(wanted / grid.cell_size - 1e-9)));
+    highest_.cell_size = static_cast<double>(parts_) * grid.cell_size;
+    rim_ = static_cast<Index>(std::ceil(around / highest_.cell_size));
+    highest_.origin =
+        grid.origin - Vector2d::Constant(static_cast<double>(rim_) * highest_.cell_size);
+    const Index rows = (grid.z.rows() + parts_ - 1) / parts_ + 2 * rim_;
+    const Index cols = (grid.z.cols() + parts_ - 1) / parts_ + 2 * rim_;
+    highest_.z = x_ = y_ = below_ = ArrayXXd::Constant(rows, cols, nothing);
+  }
+
+  Rectangle extent() const { return highest_.extent(); }
+
+  void add(const Vector3d& p) {
+    const auto at = cell_of(p);
+    if (!at || p.z() <= highest_.z(at->first, at->second)) return;
+    highest_.z(at->first, at->second) = p.z();
+    x_(at->first, at->second) = p.x();
+    y_(at->first, at->second) = p.y();
+  }
+
+  /// After all were added.
+  void begin_below() { top_ = highest_within(highest_.z, 1); }
+  void add_below(const Vector3d& p) {
+    const auto at = cell_of(p);
+    if (!at || p.z() > top_(at->first, at->second) - level) return;
+    double& below = below_(at->first, at->second);
+    below = std::max(below, p.z());
+  }
+
+  /// The tops of obstacles; `nothing` where there is none.
+  ArrayXXd obstacles() const {
+    HeightMap shape = highest_;
+    shape.z = (highest_.z > nothing).select(highest_.z, top_);
+    shape.z = (shape.z > nothing).select(shape.z, std::nan("")).eval();
+    const CellMask found = find_obstacles(shape);
+    const ArrayXXd next = highest_within(below_, 1);
+    const ArrayXXd above = (next_ray * (top_ - next)).min(most_above);
+    ArrayXXd result = widened((found && highest_.z > nothing).select(shape.z + above, nothing));
+    for (const Wire& wire : find_wires(hanging(found, next))) enter(wire, result);
+    return result;
+  }
+
+  /// On the cells of the map that these were made for.
+  ArrayXXd on(const HeightMap& grid, const ArrayXXd& values) const {
+    ArrayXXd fine(grid.z.rows(), grid.z.cols());
+    for (Index col = 0; col < fine.cols(); ++col) {
+      for (Index row = 0; row < fine.rows(); ++row) {
+        const double value = values(rim_ + row / parts_, rim_ + col / parts_);
+        fine(row, col) = value > nothing ? value : std::nan("");
+      }
+    }
+    return fine;
+  }
+
+ private:
+  std::optional<std::pair<Index, Index>> cell_of(const Vector3d& p) const {
+    const double col = std::floor((p.x() - highest_.origin.x()) / highest_.cell_size);
+    const double row = std::floor((p.y() - highest_.origin.y()) / highest_.cell_size);
+    const bool inside = col >= 0.0 && row >= 0.0 && col < static_cast<double>(highest_.z.cols()) &&
+                        row < static_cast<double>(highest_.z.rows());
+    if (!inside) return std::nullopt;
+    return std::pair(static_cast<Index>(row), static_cast<Index>(col));
+  }
+
+  /// Returns of obstacles with nothing below them but the ground, and ground all around: not the
+  /// edge of a roof.
+  /// @param next  level below the highest of each cell and those beside it
+  std::vector<Vector3d> hanging(const CellMask& found, const ArrayXXd& next) const {
+    const ArrayXXd& z = highest_.z;
+    const ArrayXXd known = (z > nothing).select(z, -nothing);
+    const ArrayXXd ground = lowest_within(known, cells(1.0));
+    const CellMask hangs = found && z > top_ - level && next < ground + low;
+    const ArrayXXd bodies = (found && !hangs).select(ArrayXXd::Ones(z.rows(), z.cols()), 0.0);
+    const ArrayXXd beside_body = highest_within(bodies, cells(0.35));
+    std::vector<Vector3d> points;
+    for (Index col = 0; col < z.cols(); ++col) {
+      for (Index row = 0; row < z.rows(); ++row) {
+        if (!hangs(row, col) || beside_body(row, col) > 0.0) continue;
+        if (!ground_around(row, col, ground(row, col) + low)) continue;
+        points.emplace_back(x_(row, col), y_(row, col), z(row, col));
+      }
+    }
+    return points;
+  }
+
+  /// Each as wide as may be hidden behind it.
+  ArrayXXd widened(const ArrayXXd& tops) const {
+    ArrayXXd wide = tops;
+    const Index near = cells(hidden);
+    const double most = std::pow(hidden / highest_.cell_size, 2);
+    for (Index col = near; col + near < tops.cols(); ++col) {
+      for (Index row = near; row + near < tops.rows(); ++row) {
+        const double top = tops(row, col);
+        if (top == nothing) continue;
+        for (Index right = -near; right <= near; ++right) {
+          for (Index down = -near; down <= near; ++down) {
+            if (static_cast<double>(right * right + down * down) > most) continue;
+            double& z = wide(row + down, col + right);
+            z = std::max(z, top);
+          }
+        }
+      }
+    }
+    return wide;
+  }
+
+  Index cells(double length) const {
+    return static_cast<Index>(std::ceil(length / highest_.cell_size));
+  }
+
+  /// Whether ground was seen within 0.5 m in at least seven of eight directions.
+  bool ground_around(Index row, Index col, double highest) const {
+    const Index near = cells(0.5);
+    unsigned seen = 0;
+    for (Index down = -near; down <= near; ++down) {
+      for (Index right = -near; right <= near; ++right) {
+        const Index r = row + down, c = col + right;
+        if (r < 0 || c < 0 || r >= highest_.z.rows() || c >= highest_.z.cols()) continue;
+        const double z = highest_.z(r, c);
+        if (z == nothing || z > highest) continue;
+        const unsigned octant = (down > 0 ? 1U : 0U) + (right > 0 ? 2U : 0U) +
+                                (std::abs(down) > std::abs(right) ? 4U : 0U);
+        seen |= 1U << octant;
+      }
+    }
+    return __builtin_popcount(seen) >= 7;
+  }
+
+  void enter(const Wire& wire, ArrayXXd& tops) const {
+    for (Index col = 0; col < tops.cols(); ++col) {
+      for (Index row = 0; row < tops.rows(); ++row) {
+        const Vector2d d = Vector2d(highest_.x(col), highest_.y(row)) - wire.middle;
+        const double along = std::abs(d.dot(wire.direction));
+        const double off = std::abs(wire.direction.x() * d.y() - wire.direction.y() * d.x());
+        const double unsure = wire.turn * std::max(0.0, along - wire.half);
+        const double half = wire_width + 0.5 * highest_.cell_size + unsure;
+        if (unsure > widest_wire || off > half) continue;
+        tops(row, col) = std::max(tops(row, col), wire.top + above_wire);
+      }
+    }
+  }
+
+  HeightMap highest_;
+  Index parts_ = 1, rim_ = 0;
+  ArrayXXd x_, y_;  ///< of the highest return
+  ArrayXXd top_;    ///< of a cell and those beside it
+  ArrayXXd below_;  ///< highest return of a cell a level below that
+};
+
+}  // namespace
+
+SeenTops seen_tops(const Scan& scan, const HeightMap& grid, const TopsOptions& options) {
+  ObstacleCells cells(grid, options.spacing);
+  SeenTops tops;
+  tops.highest = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), nothing);
+  const Rectangle fine = grid.extent(), wide = cells.extent();
+  const auto counts = [&](const Vector3d& p) {
+    return p.allFinite() && p.z() <= options.ceiling && wide.contains(p.x(), p.y()) &&
+           !(options.own && options.own->contains(p.x(), p.y()));
+  };
+  visit_scan(scan, [&](const std::vector<Vector3d>& points) {
+    for (const Vector3d& p : points) {
+      if (!counts(p)) continue;
+      cells.add(p);
+      if (!fine.contains(p.x(), p.y())) continue;
+      const auto col = static_cast<Index>((p.x() - grid.origin.x()) / grid.cell_size);
+      const auto row = static_cast<Index>((p.y() - grid.origin.y()) / grid.cell_size);
+      double& z = tops.highest(std::min(row, grid.z.rows() - 1), std::min(col, grid.z.cols() - 1));
+      z = std::max(z, p.z());
+    }
+  });
+  cells.begin_below();
+  visit_scan(scan, [&](const std::vector<Vector3d>& points) {
+    for (const Vector3d& p : points) {
+      if (counts(p)) cells.add_below(p);
+    }
+  });
+  tops.highest = (tops.highest > nothing).select(tops.highest, std::nan("")).eval();
+  tops.obstacles = cells.on(grid, cells.obstacles());
+  return tops;
+}
+
+}  // namespace excavplan
