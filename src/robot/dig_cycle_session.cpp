@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include <excavplan/planning/standing_ground.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
