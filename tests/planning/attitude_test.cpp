@@ -122,13 +122,15 @@ TEST(Attitude, TheSwingMustHoldTheFrontOnASlope) {
   EXPECT_NE(warnings[0].message.find("the swing needs"), std::string::npos);
 }
 
+/// In sand, which resists by its weight.
 DigResult dug_at(const Attitude& attitude) {
+  static const SoilKind sand = load_soil(find_data_file("soils/sand.json"));
   const Machine machine = with_attitude(zx120(), attitude);
   const Terrain level = level_planning_ground(machine);
   const auto path = make_dig_path(machine, paper_fixed_path(), 6.0, [](double) { return 0.0; });
   DigOptions options;
   options.history = true;
-  return HeightMapSimulator(machine, loam(), 40.0).dig(level, std::get<DigPath>(path), options);
+  return HeightMapSimulator(machine, sand, 40.0).dig(level, std::get<DigPath>(path), options);
 }
 
 /// Of soil on the bucket against the drag, the mean [N].
@@ -136,7 +138,7 @@ double drag_of(const DigResult& result) {
   double sum = 0.0, count = 0.0;
   for (const ForceSample& at : result.history) {
     if (at.phase != DigPhase::drag) continue;
-    sum += at.force.x();
+    sum += at.soil.x();
     count += 1.0;
   }
   return sum / count;

@@ -157,6 +157,24 @@ TEST_F(Tools, PlannedPathBeatsTheFixedOneInEverySoil) {
   }
 }
 
+/// A gain by the dig's efficiency can cost payload and the cycle: both stand beside it.
+TEST_F(Tools, ExperimentShowsWhatAGainCosts) {
+  const Words words = {"--densities", "10", "--goal", "energy"};
+  const json condition = answer("run-experiment", words).at("conditions").at(0);
+  const auto gain = [&](const std::string& of) {
+    return 100.0 * (number(condition, "/planned/" + of) / number(condition, "/fixed/" + of) - 1.0);
+  };
+  EXPECT_NEAR(number(condition, "/payload_gain_percent"), gain("payload_mass_kg"), 1e-9);
+  EXPECT_NEAR(number(condition, "/cycle_gain_percent"), gain("cycle/efficiency_kg_per_kj"), 1e-9);
+  const std::string text = run_program("run-experiment", words).out;
+  const std::size_t at = text.find("; payload ");
+  ASSERT_NE(at, std::string::npos) << text;
+  EXPECT_NE(text.find(number(condition, "/payload_gain_percent") < 0.0 ? "kg (-" : "kg (+", at),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("over the whole cycle", at), std::string::npos) << text;
+}
+
 TEST_F(Tools, RunExperimentDigsInTheSimulatorAsked) {
   const Words words = {"--densities", "40"};
   const json usual = answer("run-experiment", words).at("conditions").at(0);

@@ -7,6 +7,7 @@
 
 #include <excavplan/scans/scan_terrain.hpp>
 
+#include "base/text.hpp"
 #include "inputs/found_pose.hpp"
 #include "inputs/scans.hpp"
 #include "inputs/unit_inputs.hpp"
@@ -57,6 +58,25 @@ void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
                   "is on the swing axis at ground level, x forward, z up: ") +
           frame_forms);
   declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
+}
+
+void declare_attitude(Arguments& arguments, TerrainInput& terrain) {
+  const std::string option = "--attitude";
+  Arguments::Entry attitude;
+  attitude.name = "attitude";
+  attitude.placeholder = "ROLL,PITCH";
+  attitude.help =
+      "how the machine stands: roll, its left side up, and pitch, its front down, such as "
+      "3deg,-5deg; the path is then in the frame of the machine (default: level) [rad]";
+  attitude.assign = [&terrain, option](const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    if (parts.size() != 2) {
+      usage_error(option + ": '" + text + "' is not ROLL,PITCH such as 3deg,-5deg");
+    }
+    terrain.attitude = {parse_quantity(option, parts[0], Quantity::angle),
+                        parse_quantity(option, parts[1], Quantity::angle)};
+  };
+  arguments.add(attitude);
 }
 
 void declare_cell(Arguments& arguments, std::optional<double>& cell_size) {

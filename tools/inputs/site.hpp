@@ -22,10 +22,15 @@ struct TerrainInput {
       frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
   std::string unit = "m";  ///< of the coordinates in the cloud
   Attitude attitude = {};  ///< of the machine, into whose frame the cloud is taken from the site's
+
+  bool is_level() const { return !cloud && attitude.is_level(); }
 };
 
 /// --terrain, --terrain-frame and --unit.
 void declare_terrain(Arguments& arguments, TerrainInput& terrain);
+
+/// --attitude, of TerrainInput::attitude.
+void declare_attitude(Arguments& arguments, TerrainInput& terrain);
 
 /// Option --cell of tools that simulate digs of a machine; by default usual_cell() of the machine.
 void declare_cell(Arguments& arguments, std::optional<double>& cell_size);

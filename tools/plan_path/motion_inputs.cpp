@@ -217,12 +217,14 @@ Site motion_ground(const MotionInputs& inputs, const Machine& machine, const Ter
   return {std::move(both.terrain), std::move(both.warnings)};
 }
 
-std::optional<HeightMap> ground_at_tracks(const MotionInputs& inputs, const Machine& machine,
-                                          const TerrainInput& terrain) {
-  if (!terrain.cloud) return std::nullopt;
-  HeightMap present = make_standing_ground(terrain, machine);
-  if (!inputs.surroundings) return present;
-  return known_from_both(present, make_standing_ground(surroundings_of(inputs, terrain), machine));
+void set_standing(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
+                  PlanOptions& options) {
+  options.attitude = terrain.attitude;
+  if (!terrain.cloud) return;
+  options.standing_on = make_standing_ground(terrain, machine);
+  if (!inputs.surroundings) return;
+  options.standing_on = known_from_both(
+      *options.standing_on, make_standing_ground(surroundings_of(inputs, terrain), machine));
 }
 
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {

@@ -34,9 +34,10 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs);
 Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
                    const CycleOptions& cycle);
 
-/// Ground for PlanOptions::standing_on: likewise of both clouds; nothing without --terrain.
-std::optional<HeightMap> ground_at_tracks(const MotionInputs& inputs, const Machine& machine,
-                                          const TerrainInput& terrain);
+/// How the machine stands, and with --terrain on what: PlanOptions::attitude and standing_on, which
+/// is of both clouds as well.
+void set_standing(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
+                  PlanOptions& options);
 
 /// A plan with the ground on which the machine stands and the objective that has its swing and dump
 /// height.

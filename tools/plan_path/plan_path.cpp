@@ -41,9 +41,7 @@ struct Inputs {
   std::optional<std::string> library;
   bool search = false;
   TerrainInput terrain;
-  std::optional<std::string> attitude;
-  std::string soil = "loam";
-  std::string machine = "zx120";
+  std::string soil = "loam", machine = "zx120";
   SimulatorInputs simulator;
   std::optional<double> cell_size;
   SearchInputs dig_search;
@@ -55,14 +53,13 @@ struct Inputs {
 
 SearchUse use_of(const Inputs& inputs) {
   if (inputs.search) return SearchUse::all;
-  return inputs.terrain.cloud ? SearchUse::start_only : SearchUse::none;
+  return inputs.terrain.is_level() ? SearchUse::none : SearchUse::start_only;
 }
 
 /// Whether any dig is simulated; a density from a file mostly has an error.
 bool simulates(const Inputs& inputs) {
   const double sd = inputs.density.sd.value_or(inputs.density.file ? 1.0 : 0.0);
-  return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator) ||
-         inputs.attitude.has_value();
+  return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator);
 }
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -72,10 +69,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
       "path library (default: that of machine-kit, or the shipped one, of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
   declare_terrain(arguments, inputs.terrain);
-  arguments.text(
-      "attitude", "ROLL,PITCH", inputs.attitude,
-      "how the machine stands: roll, its left side up, and pitch, its front down, such as "
-      "3deg,-5deg; the path is then in its own frame [rad]");
+  declare_attitude(arguments, inputs.terrain);
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   declare_simulator(arguments, inputs.simulator);
@@ -92,37 +86,22 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.report(inputs.report);
 }
 
-Attitude attitude_of(const Inputs& inputs) {
-  if (!inputs.attitude) return {};
-  const std::string option = "--attitude";
-  const std::vector<std::string> parts = split(*inputs.attitude, ',');
-  if (parts.size() != 2) {
-    usage_error(option + ": '" + *inputs.attitude + "' is not ROLL,PITCH such as 3deg,-5deg");
-  }
-  return {parse_quantity(option, parts[0], Quantity::angle),
-          parse_quantity(option, parts[1], Quantity::angle)};
-}
-
 PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                        Console& console) {
   PlanOptions options;
   options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
   options.search = search_options(inputs.dig_search, machine, use_of(inputs), console);
-  if (inputs.library) {
-    options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
-  } else {
-    options.library = kit_library(inputs.machine, machine, soil.name,
-                                  inputs.dig_search.goal.numbers, options.search.objective);
-  }
+  options.library = inputs.library
+                        ? std::make_shared<PathLibrary>(load_path_library(*inputs.library))
+                        : kit_library(inputs.machine, machine, soil.name,
+                                      inputs.dig_search.goal.numbers, options.search.objective);
   options.simulator = simulator_of(inputs.simulator, console);
   options.cell_size = inputs.cell_size;
   return options;
 }
 
-Outcome work(const Inputs& given, Console& console) {
+Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
-  Inputs inputs = given;
-  inputs.terrain.attitude = attitude_of(inputs);
   check(inputs.density);
   check(inputs.dig_search);
   const GroundDensity density = density_of(inputs.density);
@@ -131,18 +110,17 @@ Outcome work(const Inputs& given, Console& console) {
   const Site site = make_site(inputs.terrain, planning_extent(machine),
                               inputs.cell_size.value_or(usual_cell(machine)));
   PlanOptions options = options_of(inputs, machine, soil, console);
-  options.attitude = inputs.terrain.attitude;
-  options.standing_on = ground_at_tracks(inputs.motion, machine, inputs.terrain);
   const Site area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
+  set_standing(inputs.motion, machine, inputs.terrain, options);
+  const Terrain* const scanned = inputs.terrain.cloud ? &site.ground : nullptr;
   DigPlan plan = naming_options(search_option_names, [&] {
-    return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
-                                : plan_dig(machine, soil, density, options);
+    return scanned ? plan_dig(machine, soil, density, *scanned, options)
+                   : plan_dig(machine, soil, density, options);
   });
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
-  outcome.warnings =
-      plan_warnings(plan, inputs.density, inputs.terrain.cloud ? &site.ground : nullptr);
+  outcome.warnings = plan_warnings(plan, inputs.density, scanned);
   for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), site.warnings}) {
     outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
   }

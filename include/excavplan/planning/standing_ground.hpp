@@ -11,7 +11,7 @@
 
 /// @file
 /// Whether a machine can stand where the site frame puts it: its tracks on the plane z = 0
-/// (docs/methods.md#standing).
+/// (docs/methods.md#machine).
 
 namespace excavplan {
 
