@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -24,6 +25,21 @@ const CloudUnit& nearest_unit(double quantity, int power, double unit, double us
 std::string size_of(const Rectangle& r, double scale) {
   return readable(scale * (r.x_max - r.x_min)) + " x " + readable(scale * (r.y_max - r.y_min)) +
          " m";
+}
+
+/// What an extent is on the Earth if it is one of degrees, by a sphere; empty where it is none of a
+/// site away from where they begin.
+std::string as_degrees(const Rectangle& r) {
+  constexpr double degree = 111195.0;  // of a great circle of radius 6371 km [m]
+  constexpr double widest = 0.02;      // ours: 2 km [deg]
+  constexpr double nearest = 0.1;      // ours: from 0 N 0 E [deg]
+  const bool is_on_earth = std::abs(r.x_max) <= 180.0 && std::abs(r.y_max) <= 90.0;
+  const double width = std::max(r.x_max - r.x_min, r.y_max - r.y_min);
+  const bool is_far = std::max(std::abs(r.x_min), std::abs(r.y_min)) > nearest;
+  if (!is_on_earth || !is_far || !(width > 0.0 && width < widest)) return "";
+  const double east = degree * std::cos(r.y_min * pi / 180.0);
+  return readable(east * (r.x_max - r.x_min), 2) + " x " +
+         readable(degree * (r.y_max - r.y_min), 2) + " m";
 }
 
 }  // namespace
@@ -65,6 +81,12 @@ std::optional<Warning> doubt_of_extent(const Rectangle& extent, double density, 
   if (!(width <= least || is_thin)) return std::nullopt;
   std::string message = "the points spread over " + size_of(extent, 1.0);
   if (is_thin) message += ", with " + readable(density, 2) + " of them per m^2";
+  if (const std::string ground = as_degrees(extent); unit == 1.0 && !ground.empty()) {
+    return Warning{WarningCode::units, message +
+                                           "; as degrees of longitude and latitude it would "
+                                           "be " +
+                                           ground + ": project them to metres"};
+  }
   const CloudUnit& likely = nearest_unit(width, 1, unit, usual);
   if (width > 0.0 && likely.length != unit) {
     message += "; with coordinates in " + likely.word + " it would be " +

@@ -32,7 +32,7 @@ const CloudUnit& likely_unit(double volume, double unit, double usual);
 std::optional<Warning> doubt_of_volume(double volume, const std::string& what, double unit);
 
 /// Code `units`: a cloud that is narrower than any bucket, or wide with less than a point per
-/// square metre, which no sensor leaves.
+/// square metre, which no sensor leaves. Named are a likely unit, or degrees on the Earth.
 /// @param unit  that was taken for that of the coordinates [m]
 std::optional<Warning> doubt_of_extent(const Rectangle& extent, double density, double unit);
 

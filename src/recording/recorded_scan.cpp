@@ -237,6 +237,7 @@ class ScanReader {
       scan.cloud.sensor_origin = Eigen::Vector3d(pose_of(first()).translation());
     }
     scan.is_counted = is_counted_;
+    require_depths_in_range(scan.cloud);
     add_doubts(scan.warnings);
     return scan;
   }
@@ -367,6 +368,15 @@ class ScanReader {
                      : ""),
         is_late);
   }
+  /// Of an image whose unit is so wrong that nothing is left of it.
+  void require_depths_in_range(const Cloud& cloud) const {
+    const auto unit = doubt_of_unit();
+    if (!unit || std::any_of(cloud.points.begin(), cloud.points.end(),
+                             [](const Eigen::Vector3d& point) { return point.allFinite(); })) {
+      return;
+    }
+    refuse_recording(recording_, unit->message);
+  }
   /// Counts that are none of millimetres, by where they would see.
   std::optional<Warning> doubt_of_unit() const {
     constexpr double farthest = 10.0;  // ours: what depth cameras measure [m]
@@ -414,6 +424,9 @@ class ScanReader {
     if (!pinhole_) return decode_points(recording_.path(), message).points;
     const DepthMessage image =
         decode_depths(recording_.path(), message, depth_unit_.value_or(millimetre));
+    require(image.is_counted || !depth_unit_,
+            recording_.path() + ": " + topic_.name +
+                " holds depths in metres, expected counts where a depth unit is given");
     note_depths(image);
     if (!(image.size == pinhole_->size)) {
       const auto text = [](const FrameSize& size) {

@@ -438,6 +438,14 @@ TEST(RecordedScan, DepthsAreInTheUnitThatIsSaid) {
   EXPECT_TRUE(read_recorded_scan(near, query_of("/camera/depth/image_rect_raw")).warnings.empty());
 }
 
+TEST(RecordedScan, WhereNoDepthIsInRangeTheUnitIsTheError) {
+  RecordingInMemory recording = recording_of_depths({33600, 34000, 34200, 34400, 33600, 0});
+  RecordingQuery query = query_of("/camera/depth/image_rect_raw");
+  EXPECT_NE(error_of_read(recording, query).find("0.125mm, which gives 4.2 m"), std::string::npos);
+  query.depth_unit = 0.125e-3;
+  EXPECT_NEAR(read_recorded_scan(recording, query).cloud.points[0].z(), 4.2, 1e-6);
+}
+
 TEST(RecordedScan, ADepthUnitIsOfDepthImages) {
   RecordingInMemory recording = numbered_clouds();
   RecordingQuery query = query_of("/points");
@@ -497,6 +505,10 @@ TEST(RecordedScan, CompressedDepthIsReadAsTheRawImage) {
   RecordingInMemory as_inverse = compressed(name, inverse);
   const RecordedScan scan = read_recorded_scan(as_inverse, query_of(name));
   EXPECT_FALSE(scan.is_counted);
+  RecordingQuery in_counts = query_of(name);
+  in_counts.depth_unit = 0.25e-3;
+  EXPECT_NE(error_of_read(as_inverse, in_counts, ErrorKind::bad_input).find("depths in metres"),
+            std::string::npos);
   EXPECT_NEAR(scan.cloud.points[1].z(), 2.0, 1e-6);
   EXPECT_NEAR(scan.cloud.points[3].z(), 4.0, 1e-6);
   EXPECT_TRUE(std::isnan(scan.cloud.points[0].z()));

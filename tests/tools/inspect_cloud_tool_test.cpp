@@ -55,6 +55,18 @@ TEST_F(Tools, InspectCloudTakesTheUnitAndDoubtsAWrongOne) {
   EXPECT_NEAR(number(right, "/max_m/1"), number(original, "/max_m/1"), 1e-4);
 }
 
+TEST_F(Tools, InspectCloudNamesDegrees) {
+  std::string rows;
+  for (int i = 0; i < 400; ++i) {  // 10 x 6 m
+    rows += "8.50" + std::to_string(1000 + 70 * (i % 20)).substr(0, 4) + "0 49.00" +
+            std::to_string(1000 + 27 * (i / 20)).substr(0, 4) + "0 0.1\n";
+  }
+  const json result = answer("inspect-cloud", {folder.write("degrees.xyz", rows)});
+  EXPECT_EQ(warning_codes(result), Words{"units"});
+  EXPECT_TRUE(contains(result["warnings"].dump(), "degrees of longitude and latitude"))
+      << result["warnings"];
+}
+
 TEST_F(Tools, InspectCloudReadsLas) {
   LasFile las;
   las.offset = {500000.0, 5800000.0, 0.0};
