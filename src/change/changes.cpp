@@ -194,7 +194,7 @@ class ChangeReader {
       return {ChangeKind::in_area, fell ? "a hole in the given area" : "a heap in the given area",
               certain, false};
     }
-    if (const double sds = significance(p); sds < established && !is_main(p)) {
+    if (const double sds = evidence(p); sds < established && !is_main(p)) {
       if (sds < hardly_there) return {ChangeKind::within_error, "noise", excluded, true};
       const bool is_near = p.area == 0 && beside(p);
       return {ChangeKind::within_error,
@@ -222,15 +222,19 @@ class ChangeReader {
     return !in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p));
   }
 
-  /// Volume over its error, for zones that may not have changed at all: filled where they were not
-  /// seen, which errs by more than normal errors do, or at a step in both scans.
+  /// Volume over its error.
   double significance(Place p) const {
-    constexpr double by_filling = 3.0;  // ours
     const ZoneErrors& errors = areas_[p.area].errors;
     const auto i = static_cast<Eigen::Index>(p.zone);
     const double variance = zone(p).variance() + errors.correlated(i, i) + errors.datum(i, i);
-    const double unseen = zone(p).unknown / zone(p).area;
-    return std::abs(zone(p).volume) / (std::sqrt(variance) * (1.0 + by_filling * unseen));
+    return std::abs(zone(p).volume) / std::sqrt(variance);
+  }
+
+  /// The same of a zone that may not have changed at all: filled where it was not seen, which errs
+  /// by more than normal errors do, or at a step in both scans.
+  double evidence(Place p) const {
+    constexpr double by_filling = 3.0;  // ours
+    return significance(p) / (1.0 + by_filling * zone(p).unknown / zone(p).area);
   }
 
   /// Of a tail that is no track: soil thins out, something else beside it does not.
