@@ -71,6 +71,10 @@ set(thorough_scans_test
   OneStandpoint.TellsItsPlaceByThePointsOnSlopes)
 # Intervals over many soils and digs.
 set(thorough_density_test
+  Families.StrewnSoilIsInNinetyTwoOfAHundredIntervals
+  Families.OutliersNoDataAndFlatFloorsLoseTrustInThreeOfAHundredAtMost
+  Families.ForeignThingsAreTrustedAndOutsideInTwoOfAHundredAtMost
+  RealPair.HalvesAgreeWithoutAnArea
   DensityByLoads.IntervalsHoldTheTruthInDigsOfTheOtherSimulator
   SoilAnswers.TheScatterOfALawIsThatOfDigsInLooseAndInDenseSoil
   SoilAnswers.AFallbackThatCannotBeIsNotUsed

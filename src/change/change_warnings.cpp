@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "change/attribution.hpp"
+#include "ground/grid_cells.hpp"
 
 namespace excavplan {
 namespace {
@@ -247,6 +249,97 @@ void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
   warn_of_bends(area, warnings);
 }
 
+// ---- Soil that slid back ------------------------------------------------------------------------
+
+/// Where a heap runs on into the hole: its slope goes down from above the ground to the floor.
+class SlideBack {
+ public:
+  explicit SlideBack(const Area& area) : area_(area) {
+    std::vector<double> depths;
+    for_each_cell(area.ground.zone, [&](Cell at) {
+      if (kind_at(at) == ZoneKind::dig) depths.push_back(-area.ground.difference(at.row, at.col));
+    });
+    depth_ = depths.empty() ? 0.0 : upper_quantile(depths, 0.9);
+  }
+
+  /// What of the hole its soil may hide, if the wall there was upright [m^3]; 0 where the cells do
+  /// not tell a slope from a wall.
+  double most_hidden() const {
+    constexpr double fewest_steps = 4.0;  // ours: cells that a slope goes down
+    const double cell = area_.grid.cell_size;
+    if (depth_ < fewest_steps * cell) return 0.0;
+    double hidden = 0.0;
+    for_each_cell(area_.ground.zone, [&](Cell at) {
+      if (kind_at(at) != ZoneKind::dump || !(area_.ground.difference(at.row, at.col) > 0.0)) return;
+      double wedge = 0.0;
+      int ways = 0;
+      for (const Cell d : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}}) {
+        const Cell next = {at.row + d.row, at.col + d.col};
+        if (!(change_at(next) <= 0.0)) continue;
+        wedge += wedge_along(at, d);
+        ++ways;
+      }
+      if (ways > 0) hidden += cell * wedge / ways;
+    });
+    return hidden;
+  }
+
+ private:
+  bool is_inside(Cell at) const {
+    const auto& zone = area_.ground.zone;
+    return at.row >= 0 && at.col >= 0 && at.row < zone.rows() && at.col < zone.cols();
+  }
+  ZoneKind kind_at(Cell at) const {
+    const int zone = area_.ground.zone(at.row, at.col);
+    return zone < 0 ? ZoneKind::other : area_.kinds[static_cast<std::size_t>(zone)];
+  }
+  double change_at(Cell at) const {
+    return is_inside(at) ? area_.ground.difference(at.row, at.col)
+                         : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /// Section of the soil under a slope that goes down from `foot` to the floor as loose soil lies
+  /// [m^2]; 0 of another.
+  double wedge_along(Cell foot, Cell d) const {
+    constexpr double steepest = 1.1;   // ours: loose soil stands at 28 to 45 degrees [-]
+    constexpr double gentlest = 0.35;  // ours
+    constexpr double floor = 0.8;      // ours, of the depth
+    const double cell = area_.grid.cell_size;
+    const auto most = static_cast<Eigen::Index>(depth_ / gentlest / cell) + 1;
+    double section = 0.0;
+    for (Eigen::Index i = 1; i <= most; ++i) {
+      const double change = change_at({foot.row + i * d.row, foot.col + i * d.col});
+      if (std::isnan(change)) return 0.0;
+      section += cell * (depth_ + change);
+      if (change > -floor * depth_) continue;
+      const double slope = -change / (cell * static_cast<double>(i));
+      return slope < steepest && slope > gentlest ? section : 0.0;
+    }
+    return 0.0;
+  }
+
+  const Area& area_;
+  double depth_ = 0.0;
+};
+
+/// Of a heap whose soil slid back over the rim of the hole.
+void warn_of_slide(const Area& area, VolumeChange& change) {
+  constexpr double noted = 0.03;  // ours, of the bulking factor
+  const double before = change.before.value;
+  const double after = change.after.value;
+  if (!(before > 0.0 && after > 0.0)) return;
+  const double hidden = SlideBack(area).most_hidden();
+  const double k = after / before;
+  const double off = std::abs((after + hidden) / (before + hidden) / k - 1.0);
+  if (off < noted) return;
+  change.warnings.emplace_back(
+      WarningCode::attribution_open,
+      "the heap runs on into the hole at the slope of loose soil: what slid back may hide up to " +
+          litres_as_m3(hidden) + " of the hole, which changes the bulking factor by " +
+          readable(100.0 * off, 2) + " %; dump farther away from the hole",
+      true);
+}
+
 }  // namespace
 
 void warn_of_balance(VolumeChange& change) {
@@ -290,6 +383,7 @@ void warn_of_balance(VolumeChange& change) {
 void warn_of_zones(const std::vector<Area>& areas, const ChangeOptions& options,
                    VolumeChange& change) {
   warn_of_others(areas, change);
+  warn_of_slide(areas.front(), change);
   warn_of_doubtful(doubtful_zones(areas, options, change), options, change.warnings);
 }
 

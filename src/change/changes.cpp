@@ -21,6 +21,7 @@ namespace prior {
 constexpr double main_hole = 0.96;     // the largest: another may fit the soil better
 constexpr double beside_main = 0.96;   // of the same kind as the hole or heap that it lies beside
 constexpr double deep_hole = 0.97;     // as deep as the largest: machines dig so
+constexpr double large_spill = 0.9;    // or a berm
 constexpr double second = 0.85;        // a hole or a heap away from the largest
 constexpr double along_swing = 0.9;    // clods between hole and heap
 constexpr double low_edge = 0.8;       // low ground beside a hole or heap that keeps its height
@@ -46,6 +47,7 @@ constexpr double small_share = 0.03;      // of the hole's volume: a clod, a ble
 constexpr double shallow = 0.03;          // what feet, tracks and settling do [m]
 constexpr double shallow_share = 0.2;     // of the hole's height
 constexpr double deep_share = 0.5;        // likewise
+constexpr double largest_spill = 0.15;    // of the hole's volume: more is seldom lost beside it
 constexpr double most_at_rim = 0.25;      // of the hole's volume
 constexpr double established = 2.0;       // sd: a change is there
 constexpr double hardly_there = 1.0;      // sd: nothing tells that it is
@@ -193,7 +195,7 @@ class ChangeReader {
       return {ChangeKind::in_area, fell ? "a hole in the given area" : "a heap in the given area",
               certain, false};
     }
-    if (const double sds = significance(p); sds < established && !is_main(p)) {
+    if (const double sds = evidence(p); sds < established && !is_main(p)) {
       if (sds < hardly_there) return {ChangeKind::within_error, "noise", excluded, true};
       const bool is_near = p.area == 0 && beside(p);
       return {ChangeKind::within_error,
@@ -221,15 +223,19 @@ class ChangeReader {
     return !in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p));
   }
 
-  /// Volume over its error, for zones that may not have changed at all: filled where they were not
-  /// seen, which errs by more than normal errors do, or at a step in both scans.
+  /// Volume over its error.
   double significance(Place p) const {
-    constexpr double by_filling = 3.0;  // ours
     const ZoneErrors& errors = areas_[p.area].errors;
     const auto i = static_cast<Eigen::Index>(p.zone);
     const double variance = zone(p).variance() + errors.correlated(i, i) + errors.datum(i, i);
-    const double unseen = zone(p).unknown / zone(p).area;
-    return std::abs(zone(p).volume) / (std::sqrt(variance) * (1.0 + by_filling * unseen));
+    return std::abs(zone(p).volume) / std::sqrt(variance);
+  }
+
+  /// The same of a zone that may not have changed at all: filled where it was not seen, which errs
+  /// by more than normal errors do, or at a step in both scans.
+  double evidence(Place p) const {
+    constexpr double by_filling = 3.0;  // ours
+    return significance(p) / (1.0 + by_filling * zone(p).unknown / zone(p).area);
   }
 
   /// Of a tail that is no track: soil thins out, something else beside it does not.
@@ -270,6 +276,7 @@ class ChangeReader {
   Meaning meaning_of_rise(Place p) const {
     if (is(p, heap_)) return {ChangeKind::heap, "the heap", certain, false};
     if (is_berm(p)) return meaning_of_berm(p);
+    if (areas_[p.area].ground.zone_is_layer[p.zone]) return meaning_of_layer(p);
     const bool is_upright = shape(p).steepest > upright && shape(p).height > least_upright &&
                             zone(p).volume < largest_upright * hole_volume();
     const Meaning soil = meaning_of_soil(p);
@@ -283,8 +290,26 @@ class ChangeReader {
             of_pair ? prior::pair_of_tracks : prior::lone_track, true};
   }
 
-  Meaning meaning_of_soil(Place p) const {
+  /// Hardly anything but soil lies so thin over so much ground.
+  Meaning meaning_of_layer(Place p) const {
     if (beside(p)) return {ChangeKind::spill, "spill beside the hole", certain, true};
+    const bool is_beside_heap = heap_ && p.area == heap_->area && beside_heap_[p.zone];
+    if (is_beside_heap || in_swing(p)) {
+      return {ChangeKind::clods, "soil strewn along the swing", prior::beside_main, true};
+    }
+    return {ChangeKind::small_rises, "soil strewn off the swing", prior::anywhere, true};
+  }
+
+  /// More than digs spill beside the hole, where the heap lies elsewhere, may be a berm.
+  Meaning meaning_of_spill(Place p) const {
+    if (heap_ && zone(p).volume > largest_spill * hole_volume()) {
+      return {ChangeKind::spill, "a ridge beside the hole", prior::large_spill, false};
+    }
+    return {ChangeKind::spill, "spill beside the hole", certain, true};
+  }
+
+  Meaning meaning_of_soil(Place p) const {
+    if (beside(p)) return meaning_of_spill(p);
     if (part(p) == Part::tail) {
       return {ChangeKind::edge, "the low edge of a heap", edge_prior(p), false};
     }

@@ -48,10 +48,12 @@ struct Edge {
 
 class TopFinder {
  public:
-  TopFinder(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after, double cell_size)
+  TopFinder(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after, double cell_size,
+            bool on_any_ground)
       : before_(before),
         after_(after),
         cell_size_(cell_size),
+        on_any_ground_(on_any_ground),
         drop_(std::max(least_drop, steep * 2.0 * cell_size)),
         label_(Eigen::ArrayXXi::Constant(after.rows(), after.cols(), free)) {}
 
@@ -68,9 +70,9 @@ class TopFinder {
       Edge edge = edge_of(top.cells, mark++);
       top.is_sure = edge.is_within(sure);
       if (!top.is_sure && !edge.is_within(suspected)) return;
-      if (median(edge.changes) < least_change) return;
+      if (!on_any_ground_ && median(edge.changes) < least_change) return;
       if (is_unchanged(top.cells)) {
-        if (stood_out_before(top.cells)) return;
+        if (on_any_ground_ || stood_out_before(top.cells)) return;
         top.is_sure = false;
       }
       tops.push_back(std::move(top));
@@ -173,6 +175,7 @@ class TopFinder {
   const Eigen::ArrayXXd& before_;
   const Eigen::ArrayXXd& after_;
   double cell_size_;
+  bool on_any_ground_;
   double drop_;
   Eigen::ArrayXXi label_;
 };
@@ -180,8 +183,8 @@ class TopFinder {
 }  // namespace
 
 std::vector<LevelTop> level_tops(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after,
-                                 double cell_size) {
-  return TopFinder(before, after, cell_size).find();
+                                 double cell_size, bool on_any_ground) {
+  return TopFinder(before, after, cell_size, on_any_ground).find();
 }
 
 }  // namespace excavplan

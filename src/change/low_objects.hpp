@@ -24,7 +24,9 @@ struct LevelTop {
 /// Not sure are those that fall along less than 45 % of their edge, but 30 % at least, as beside
 /// the wall of the hole; and those as high as the ground was, unless they stood out of it before,
 /// as walls do.
+/// @param on_any_ground  whether the ground around changed or not, and none that is as high
+///        in the other scan
 std::vector<LevelTop> level_tops(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after,
-                                 double cell_size);
+                                 double cell_size, bool on_any_ground = false);
 
 }  // namespace excavplan

@@ -123,18 +123,18 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
   return objects;
 }
 
-/// Crates and the like in the scan after.
-std::vector<Object> lying(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after,
-                          double cell_size, double margin) {
+/// Crates and the like in the scan `with`.
+std::vector<Object> lying(const Eigen::ArrayXXd& without, const Eigen::ArrayXXd& with,
+                          double cell_size, double margin, bool on_any_ground) {
   constexpr double side = 1.5;  // cells that show its sides beyond the top
   std::vector<Object> objects;
-  for (const LevelTop& top : level_tops(before, after, cell_size)) {
+  for (const LevelTop& top : level_tops(without, with, cell_size, on_any_ground)) {
     Object object;
     object.is_low = true;
     object.is_sure = top.is_sure;
-    object.cells = widened(top.cells, after, margin + side);
+    object.cells = widened(top.cells, with, margin + side);
     for (const Cell at : top.cells) {
-      const double change = after(at.row, at.col) - before(at.row, at.col);
+      const double change = with(at.row, at.col) - without(at.row, at.col);
       if (!std::isnan(change)) object.volume += cell_size * cell_size * change;
     }
     objects.push_back(std::move(object));
@@ -211,9 +211,14 @@ std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& a
   blank(before, gone);
   blank_faces(before, after);
   blank_structures(before, after, cell_size);
-  std::vector<Object> low = lying(before, after, cell_size, margin);
+  // Soil lies level with steep sides only where it was dug, so that a thing before may lie
+  // anywhere.
+  std::vector<Object> low = lying(before, after, cell_size, margin, false);
+  std::vector<Object> low_before = lying(after, before, cell_size, margin, true);
   blank(after, low);
+  blank(before, low_before);
   objects.insert(objects.end(), low.begin(), low.end());
+  gone.insert(gone.end(), low_before.begin(), low_before.end());
   for (Object& object : gone) {
     object.is_before = true;
     object.volume = -object.volume;

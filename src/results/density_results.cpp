@@ -204,6 +204,8 @@ Json density_json(const RelativeDensity& density) {
 Json estimate_json(const DensityEstimate& estimate) {
   auto json = Json::object();
   json["volume"] = volumes_json(estimate.change);
+  add_measured(json["volume"], "outside", estimate.change.outside, "_m3");
+  add_measured(json["volume"], "strewn", estimate.change.strewn, "_m3");
   add_bulking(estimate, json);
   json["soils"] = soils_json(estimate.soils);
   json["any_soil"] = nullptr;

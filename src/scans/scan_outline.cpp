@@ -100,9 +100,18 @@ double height_step_of(const std::vector<double>& sorted) {
   return static_cast<double>(others) > most_other * static_cast<double>(steps.size()) ? 0.0 : least;
 }
 
-/// Heights that mean "none": those that three points and more share exactly far from all others, as
-/// -9999 and the largest float, and a zero that a few points in a hundred share where hardly any
-/// share another height.
+/// A number that stands for "none" in some format: nines, the ends of an integer, a huge one.
+bool stands_for_none(double height) {
+  constexpr double huge = 1e30;
+  const double size = std::abs(height);
+  const bool is_nines =
+      size > 98.0 && size < huge &&
+      std::abs(std::round(std::log10(size + 1.0)) - std::log10(size + 1.0)) < 1e-9;
+  return is_nines || size >= huge || size == 32767.0 || size == 32768.0 || size == 65535.0;
+}
+
+/// Heights that mean "none": such numbers where three points and more share them far from all
+/// others, and a zero that a few points in a hundred share where hardly any share another height.
 std::vector<double> no_data_in(const std::vector<double>& sorted) {
   constexpr std::size_t fewest = 3;      // ours
   constexpr double apart = 10.0;         // ours, of files in metres; and the range of the others
@@ -125,7 +134,7 @@ std::vector<double> no_data_in(const std::vector<double>& sorted) {
     };
     const bool is_far = std::abs(runs[i].height - middle) > far && (i == 0 || gap(i - 1) > apart) &&
                         (i + 1 == runs.size() || gap(i + 1) > apart);
-    if (is_far && runs[i].count >= fewest) {
+    if (is_far && runs[i].count >= fewest && stands_for_none(runs[i].height)) {
       found.push_back(runs[i].height);
     } else if (std::abs(runs[i].height) <= same) {
       zeros = runs[i].count;
@@ -139,6 +148,37 @@ std::vector<double> no_data_in(const std::vector<double>& sorted) {
     found.push_back(0.0);
   }
   return found;
+}
+
+/// How far points are spread in plan (Welford 1962).
+class PlanSpread {
+ public:
+  void add(const Eigen::Vector3d& point) {
+    count_ += 1.0;
+    const Eigen::Vector2d off = point.head<2>() - mean_;
+    mean_ += off / count_;
+    squares_ += off.cwiseProduct(point.head<2>() - mean_);
+  }
+  Eigen::Array2d sd() const { return (squares_ / std::max(count_, 1.0)).array().sqrt(); }
+
+ private:
+  double count_ = 0.0;
+  Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d squares_ = Eigen::Vector2d::Zero();
+};
+
+/// True of chosen points that are spread as all are, as no data is, or lie at one place.
+template <typename Chosen>
+bool are_strewn(const std::vector<Eigen::Vector3d>& points, const Chosen& is_chosen) {
+  constexpr double wide = 0.5;     // ours, in each direction
+  constexpr double narrow = 1e-3;  // [m]
+  PlanSpread all;
+  PlanSpread chosen;
+  for (const Eigen::Vector3d& point : points) {
+    all.add(point);
+    if (is_chosen(point)) chosen.add(point);
+  }
+  return chosen.sd().maxCoeff() < narrow || (chosen.sd() > wide * all.sd()).all();
 }
 
 /// Extent and density of a cloud that streams by.
@@ -177,6 +217,13 @@ void CloudOutline::drop_no_data(std::vector<Eigen::Vector3d>& points, ScanOutlin
   for (const Eigen::Vector3d& point : points) heights.push_back(height_in_file(point));
   std::sort(heights.begin(), heights.end());
   outline.no_data = no_data_in(heights);
+  const auto is_drawn = [&](double none) {  // a level thing at height 0
+    return none == 0.0 && !are_strewn(points, [&](const Eigen::Vector3d& point) {
+             return is_no_data(height_in_file(point), {none});
+           });
+  };
+  outline.no_data.erase(std::remove_if(outline.no_data.begin(), outline.no_data.end(), is_drawn),
+                        outline.no_data.end());
   if (outline.no_data.empty()) return;
   const auto before = static_cast<double>(points.size());
   points.erase(std::remove_if(points.begin(), points.end(),

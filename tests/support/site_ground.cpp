@@ -390,7 +390,11 @@ void back_over_rim(Draft& d) {
   const double slope = d.random.uniform(30.0, 38.0) * degree;
   const double run_in = d.random.uniform(0.15, 0.45);  // of the rim behind the foot [m]
   const double length = d.random.uniform(1.0, 1.1) * dig.pit_length;
-  const double half = std::sqrt(loose / (length * std::tan(slope)));
+  double half = std::sqrt(loose / (length * std::tan(slope)));
+  for (int i = 0; i < 30; ++i) {
+    half -= (pi / 3.0 * half * half * half + length * half * half - loose / std::tan(slope)) /
+            (pi * half * half + 2.0 * length * half);
+  }
   const double axis = 0.5 * dig.pit_width + half - run_in;
   const Height ridge = [=](double x, double y) {
     const double u =
