@@ -9,6 +9,7 @@
 #include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/plan_stamp.hpp"
 
 namespace excavplan {
 namespace {
@@ -45,6 +46,12 @@ std::string duration_text(std::int64_t time_ns) {
          ", nanosec: " + std::to_string(time_ns % second) + "}";
 }
 
+/// A comment that states the plan; messages have no place for it.
+std::string plan_line(const Trajectory& trajectory) {
+  if (!trajectory.plan) return "";
+  return "# plan: " + json_text(stamp_json(*trajectory.plan)) + '\n';
+}
+
 }  // namespace
 
 JointMotion joint_motion(const Trajectory& trajectory) {
@@ -76,6 +83,7 @@ JointMotion joint_motion(const Trajectory& trajectory) {
 std::string to_joint_trajectory(const Trajectory& trajectory) {
   const JointMotion motion = joint_motion(trajectory);
   std::string text =
+      plan_line(trajectory) +
       "header: {stamp: {sec: 0, nanosec: 0}, frame_id: \"\"}\njoint_names: " + yaml(motion.names) +
       "\npoints:" + (motion.points.empty() ? " []\n" : "\n");
   for (const JointPoint& point : motion.points) {
@@ -92,7 +100,7 @@ std::string to_joint_commands(const Trajectory& trajectory) {
   const std::string none = yaml(std::vector<double>(motion.names.size(), 0.0));
   std::string text;
   for (const JointPoint& point : motion.points) {
-    text += (text.empty() ? "" : "---\n");
+    text += text.empty() ? plan_line(trajectory) : "---\n";
     text += "joint_name: " + names + "\ncontrol_type: 0\nposition: " + yaml(point.positions) +
             "\nvelocity: " + yaml(point.velocities) + "\neffort: " + none + '\n';
   }

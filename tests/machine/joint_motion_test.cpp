@@ -42,6 +42,16 @@ TEST(JointMotion, KeepsTheJerkWithTheTimesOfMessages) {
   }
 }
 
+TEST(JointMotion, MessagesStateThePlanInAComment) {
+  Trajectory trajectory;
+  trajectory.points.resize(1);
+  const nlohmann::json before = parse_yaml("motion", to_joint_trajectory(trajectory));
+  trajectory.plan = PlanStamp{"0123456789abcdef"};
+  EXPECT_EQ(to_joint_trajectory(trajectory).rfind("# plan: {\"id\":\"0123456789abcdef\"", 0), 0U);
+  EXPECT_EQ(parse_yaml("motion", to_joint_trajectory(trajectory)), before);
+  EXPECT_EQ(to_joint_commands(trajectory).rfind("# plan: {", 0), 0U);
+}
+
 TEST(JointMotion, RoundsTimesToNanoseconds) {
   Trajectory trajectory;
   trajectory.points.resize(2);
