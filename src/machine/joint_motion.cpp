@@ -83,7 +83,6 @@ JointMotion joint_motion(const Trajectory& trajectory) {
 std::string to_joint_trajectory(const Trajectory& trajectory) {
   const JointMotion motion = joint_motion(trajectory);
   std::string text =
-      plan_line(trajectory) +
       "header: {stamp: {sec: 0, nanosec: 0}, frame_id: \"\"}\njoint_names: " + yaml(motion.names) +
       "\npoints:" + (motion.points.empty() ? " []\n" : "\n");
   for (const JointPoint& point : motion.points) {
@@ -91,7 +90,7 @@ std::string to_joint_trajectory(const Trajectory& trajectory) {
     if (!point.accelerations.empty()) text += "\n  accelerations: " + yaml(point.accelerations);
     text += "\n  time_from_start: " + duration_text(point.time_ns) + '\n';
   }
-  return text;
+  return text + plan_line(trajectory);
 }
 
 std::string to_joint_commands(const Trajectory& trajectory) {
@@ -100,11 +99,11 @@ std::string to_joint_commands(const Trajectory& trajectory) {
   const std::string none = yaml(std::vector<double>(motion.names.size(), 0.0));
   std::string text;
   for (const JointPoint& point : motion.points) {
-    text += text.empty() ? plan_line(trajectory) : "---\n";
+    text += text.empty() ? "" : "---\n";
     text += "joint_name: " + names + "\ncontrol_type: 0\nposition: " + yaml(point.positions) +
             "\nvelocity: " + yaml(point.velocities) + "\neffort: " + none + '\n';
   }
-  return text;
+  return text + plan_line(trajectory);
 }
 
 }  // namespace excavplan

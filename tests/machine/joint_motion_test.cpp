@@ -47,9 +47,10 @@ TEST(JointMotion, MessagesStateThePlanInAComment) {
   trajectory.points.resize(1);
   const nlohmann::json before = parse_yaml("motion", to_joint_trajectory(trajectory));
   trajectory.plan = PlanStamp{"0123456789abcdef"};
-  EXPECT_EQ(to_joint_trajectory(trajectory).rfind("# plan: {\"id\":\"0123456789abcdef\"", 0), 0U);
+  EXPECT_NE(to_joint_trajectory(trajectory).find("\n# plan: {\"id\":\"0123456789abcdef\""),
+            std::string::npos);
   EXPECT_EQ(parse_yaml("motion", to_joint_trajectory(trajectory)), before);
-  EXPECT_EQ(to_joint_commands(trajectory).rfind("# plan: {", 0), 0U);
+  EXPECT_NE(to_joint_commands(trajectory).find("\n# plan: {"), std::string::npos);
 }
 
 TEST(JointMotion, RoundsTimesToNanoseconds) {
