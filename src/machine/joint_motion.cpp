@@ -9,6 +9,7 @@
 #include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/plan_stamp.hpp"
 
 namespace excavplan {
 namespace {
@@ -43,6 +44,12 @@ std::string duration_text(std::int64_t time_ns) {
   constexpr std::int64_t second = 1'000'000'000;
   return "{sec: " + std::to_string(time_ns / second) +
          ", nanosec: " + std::to_string(time_ns % second) + "}";
+}
+
+/// A comment that states the plan; messages have no place for it.
+std::string plan_line(const Trajectory& trajectory) {
+  if (!trajectory.plan) return "";
+  return "# plan: " + json_text(stamp_json(*trajectory.plan)) + '\n';
 }
 
 }  // namespace
@@ -83,7 +90,7 @@ std::string to_joint_trajectory(const Trajectory& trajectory) {
     if (!point.accelerations.empty()) text += "\n  accelerations: " + yaml(point.accelerations);
     text += "\n  time_from_start: " + duration_text(point.time_ns) + '\n';
   }
-  return text;
+  return text + plan_line(trajectory);
 }
 
 std::string to_joint_commands(const Trajectory& trajectory) {
@@ -92,11 +99,11 @@ std::string to_joint_commands(const Trajectory& trajectory) {
   const std::string none = yaml(std::vector<double>(motion.names.size(), 0.0));
   std::string text;
   for (const JointPoint& point : motion.points) {
-    text += (text.empty() ? "" : "---\n");
+    text += text.empty() ? "" : "---\n";
     text += "joint_name: " + names + "\ncontrol_type: 0\nposition: " + yaml(point.positions) +
             "\nvelocity: " + yaml(point.velocities) + "\neffort: " + none + '\n';
   }
-  return text;
+  return text + plan_line(trajectory);
 }
 
 }  // namespace excavplan

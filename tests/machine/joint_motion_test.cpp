@@ -42,6 +42,17 @@ TEST(JointMotion, KeepsTheJerkWithTheTimesOfMessages) {
   }
 }
 
+TEST(JointMotion, MessagesStateThePlanInAComment) {
+  Trajectory trajectory;
+  trajectory.points.resize(1);
+  const nlohmann::json before = parse_yaml("motion", to_joint_trajectory(trajectory));
+  trajectory.plan = PlanStamp{"0123456789abcdef"};
+  EXPECT_NE(to_joint_trajectory(trajectory).find("\n# plan: {\"id\":\"0123456789abcdef\""),
+            std::string::npos);
+  EXPECT_EQ(parse_yaml("motion", to_joint_trajectory(trajectory)), before);
+  EXPECT_NE(to_joint_commands(trajectory).find("\n# plan: {"), std::string::npos);
+}
+
 TEST(JointMotion, RoundsTimesToNanoseconds) {
   Trajectory trajectory;
   trajectory.points.resize(2);

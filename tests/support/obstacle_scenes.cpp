@@ -91,61 +91,60 @@ Shape shape(Shape::Kind kind, std::string name, const Vector3d& at, const Vector
   return {kind, std::move(name), at, size, turn, Vector3d::Zero()};
 }
 
-void add_shape(Random& random, ObstacleScene& scene) {
+Shape wire(Random& random, const Vector3d& middle, double turn) {
+  Shape wire = shape(Shape::Kind::wire, "wire", middle, {0.01, 0.0, 0.0});
+  const double length = random.uniform(4.0, 20.0);
+  const Vector3d half = 0.5 * length * Vector3d(std::cos(turn), std::sin(turn), 0.0);
+  const double height = random.uniform(1.5, 6.0), slope = random.uniform(-0.05, 0.05);
+  wire.at = middle - half + Vector3d(0.0, 0.0, height - slope * length);
+  wire.to = middle + half + Vector3d(0.0, 0.0, height + slope * length);
+  return wire;
+}
+
+std::vector<Shape> truck(Random& random, const Vector3d& at, double turn) {
+  const Vector3d size(random.uniform(4.0, 7.0), 2.5, random.uniform(1.6, 2.8));
+  const Vector3d cab = turned({0.5 * size.x() + 1.0, 0.0, 0.0}, turn);
+  return {shape(Shape::Kind::box, "truck", at, size, turn),
+          shape(Shape::Kind::box, "cab", at + cab, {1.9, 2.4, 3.0}, turn)};
+}
+
+std::vector<Shape> tree(Random& random, const Vector3d& at) {
+  const double trunk = random.uniform(2.0, 3.5), crown = random.uniform(0.7, 1.4);
+  const Vector3d up(0.0, 0.0, trunk + 0.6 * crown);
+  return {shape(Shape::Kind::post, "trunk", at, {random.uniform(0.08, 0.2), 0.0, trunk}),
+          shape(Shape::Kind::ball, "crown", at + up, {crown, 0.0, 0.0})};
+}
+
+std::vector<Shape> any_shapes(Random& random) {
   using Kind = Shape::Kind;
   const double angle = random.uniform(-pi, pi), away = random.uniform(2.4, 9.5);
   const Vector3d at(away * std::cos(angle), away * std::sin(angle), 0.0);
   const double turn = random.uniform(-pi, pi);
-  std::vector<Shape>& all = scene.shapes;
+  const auto between = [&](double low, double high) { return random.uniform(low, high); };
   switch (random.index(9)) {
-    case 0:
-      all.push_back(shape(
-          Kind::box, "wall", at,
-          {random.uniform(1.5, 8.0), random.uniform(0.1, 0.4), random.uniform(0.8, 3.8)}, turn));
-      break;
+    case 0: {
+      const Vector3d size{between(1.5, 8.0), between(0.1, 0.4), between(0.8, 3.8)};
+      return {shape(Kind::box, "wall", at, size, turn)};
+    }
     case 1:
-      all.push_back(shape(Kind::post, "mast", at,
-                          {random.uniform(0.04, 0.2), 0.0, random.uniform(2.5, 8.0)}));
-      break;
-    case 2: {
-      Shape wire = shape(Kind::wire, "wire", at, {0.01, 0.0, 0.0});
-      const double length = random.uniform(4.0, 20.0);
-      const Vector3d half = 0.5 * length * Vector3d(std::cos(turn), std::sin(turn), 0.0);
-      const double height = random.uniform(1.5, 6.0), slope = random.uniform(-0.05, 0.05);
-      wire.at = at - half + Vector3d(0.0, 0.0, height - slope * length);
-      wire.to = at + half + Vector3d(0.0, 0.0, height + slope * length);
-      all.push_back(wire);
-      break;
-    }
-    case 3: {
-      const Vector3d size(random.uniform(4.0, 7.0), 2.5, random.uniform(1.6, 2.8));
-      all.push_back(shape(Kind::box, "truck", at, size, turn));
-      const Vector3d cab = turned({0.5 * size.x() + 1.0, 0.0, 0.0}, turn);
-      all.push_back(shape(Kind::box, "cab", at + cab, {1.9, 2.4, 3.0}, turn));
-      break;
-    }
+      return {shape(Kind::post, "mast", at, {between(0.04, 0.2), 0.0, between(2.5, 8.0)})};
+    case 2:
+      return {wire(random, at, turn)};
+    case 3:
+      return truck(random, at, turn);
     case 4:
     case 5:
-      all.push_back(shape(Kind::post, "person", at,
-                          {random.uniform(0.18, 0.27), 0.0, random.uniform(1.55, 1.95)}));
-      break;
+      return {shape(Kind::post, "person", at, {between(0.18, 0.27), 0.0, between(1.55, 1.95)})};
     case 6: {
-      const double radius = random.uniform(0.7, 2.0);
-      all.push_back(
-          shape(Kind::cone, "heap", at, {radius, 0.0, radius * random.uniform(0.5, 0.75)}));
-      break;
+      const double radius = between(0.7, 2.0);
+      return {shape(Kind::cone, "heap", at, {radius, 0.0, radius * between(0.5, 0.75)})};
     }
-    case 7: {
-      const double trunk = random.uniform(2.0, 3.5), crown = random.uniform(0.7, 1.4);
-      all.push_back(shape(Kind::post, "trunk", at, {random.uniform(0.08, 0.2), 0.0, trunk}));
-      all.push_back(shape(Kind::ball, "crown", at + Vector3d(0.0, 0.0, trunk + 0.6 * crown),
-                          {crown, 0.0, 0.0}));
-      break;
+    case 7:
+      return tree(random, at);
+    default: {
+      const Vector3d size{between(0.3, 2.0), between(0.3, 2.0), between(0.6, 2.0)};
+      return {shape(Kind::box, "box", at, size, turn)};
     }
-    default:
-      all.push_back(shape(
-          Kind::box, "box", at,
-          {random.uniform(0.3, 2.0), random.uniform(0.3, 2.0), random.uniform(0.6, 2.0)}, turn));
   }
 }
 
@@ -229,12 +228,11 @@ ObstacleScene any_scene(std::uint64_t number) {
   ObstacleScene scene;
   const std::uint64_t count = random.index(5);
   for (std::uint64_t i = 0; i < count; ++i) {
-    ObstacleScene more;
+    std::vector<Shape> more;
     do {
-      more.shapes.clear();
-      add_shape(random, more);
-    } while (std::any_of(more.shapes.begin(), more.shapes.end(), touches_machine));
-    scene.shapes.insert(scene.shapes.end(), more.shapes.begin(), more.shapes.end());
+      more = any_shapes(random);
+    } while (std::any_of(more.begin(), more.end(), touches_machine));
+    scene.shapes.insert(scene.shapes.end(), more.begin(), more.end());
   }
   if (random.uniform() < 0.15) {
     scene.edge = random.uniform(3.0, 8.0);
