@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "ground/grid_cells.hpp"
 
@@ -217,7 +218,25 @@ class CellMean {
 struct Partition {
   Overlay overlay;
   double explained = 0.0;  // of the squares about the mean [-]
+  std::size_t below = 0;   // heights in the lower part
 };
+
+/// Larger of the standard deviations of the two parts [m].
+double scatter_of_parts(const std::vector<float>& heights, std::size_t below) {
+  double largest = 0.0;
+  for (const auto& [from, to] :
+       {std::pair(std::size_t{0}, below), std::pair(below, heights.size())}) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = from; i < to; ++i) {
+      sum += static_cast<double>(heights[i]);
+      squares += static_cast<double>(heights[i]) * static_cast<double>(heights[i]);
+    }
+    const auto n = static_cast<double>(to - from);
+    largest = std::max(largest, std::sqrt(std::max(0.0, squares / n - sum * sum / n / n)));
+  }
+  return largest;
+}
 
 /// By least squares, of sorted heights, with at least `fewest` in each part.
 Partition best_partition(const std::vector<float>& heights, std::size_t fewest) {
@@ -240,7 +259,7 @@ Partition best_partition(const std::vector<float>& heights, std::size_t fewest) 
     if (explained <= best.explained) continue;
     const double valley =
         0.5 * (static_cast<double>(heights[i - 1]) + static_cast<double>(heights[i]));
-    best = {{apart, 1.0 - count / n, below / count, valley}, explained};
+    best = {{apart, 1.0 - count / n, below / count, valley}, explained, i};
   }
   return best;
 }
@@ -285,6 +304,7 @@ std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope
                                   std::vector<float>& heights) {
   constexpr double least = 0.03;  // [m]: clods are as high
   constexpr double most_explained = 0.85;
+  constexpr double most_scatter = 0.6;  // of a part, to their distance: outliers scatter more
   constexpr std::size_t enough = 20;
   const std::size_t fewest = std::max<std::size_t>(3, points.size() / 10);
   if (points.size() < 2 * fewest) return std::nullopt;
@@ -298,7 +318,9 @@ std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope
   const Partition best = best_partition(heights, fewest);
   const bool is_noise =
       best.overlay.apart < by_noise && (best.explained < most_explained || points.size() < enough);
-  if (best.overlay.apart < least || is_noise || !lies_among(points, best.overlay.valley, slope)) {
+  if (best.overlay.apart < least || is_noise) return std::nullopt;
+  if (scatter_of_parts(heights, best.below) > most_scatter * best.overlay.apart ||
+      !lies_among(points, best.overlay.valley, slope)) {
     return std::nullopt;
   }
   return best.overlay;
