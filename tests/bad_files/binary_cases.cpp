@@ -210,7 +210,8 @@ BadFiles bad_binary_files(const string& format) {
     const bool is_container = format == "mcap" || format == "bag" || format == "db3";
     const bool may_be = file.name == "zeros" || file.name == "reversed";
     if (may_be && !is_container && format != "depth_png") file.expected = either;
-    if (format == "urdf" && file.name == "UTF-8 byte order mark") file.expected = same;  // XML 1.0
+    if (format == "urdf" && file.name == "UTF-8 byte order mark")
+      file.expected = Expected::same;  // XML 1.0
   }
   if (format == "depth_png") add_pngs(files);
   return files;

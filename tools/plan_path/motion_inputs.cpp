@@ -135,11 +135,7 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
       planned.machine, planned.ground.ground, planned.plan,
       {joints_of(inputs, planned.machine), inputs.whole_cycle, planned.objective}, inputs.options);
   if (auto* made = std::get_if<Trajectory>(&motion)) {
-    if (made->plan && planned.terrain.frame) {
-      const Eigen::Isometry3d site_from_scan(
-          frame_named("--terrain-frame", *planned.terrain.frame));
-      made->plan->pose = site_from_scan.inverse();
-    }
+    if (made->plan) made->plan->pose = planned.ground.pose;
     return std::move(*made);
   }
   const auto* stop = std::get_if<BlockedWay>(&motion);
@@ -205,16 +201,23 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
       });
 }
 
-Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
-                   const CycleOptions& cycle) {
+MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
+                           const TerrainInput& terrain, const CycleOptions& cycle) {
   check(inputs, machine, cycle);
   if (inputs.surroundings && !terrain.cloud) usage_error("--surroundings needs --terrain");
-  if (!inputs.file || !leaves_the_dig(inputs)) return {level_swing_ground(machine), {}};
-  const Terrain present = make_swing_ground(terrain, machine);
-  if (!inputs.surroundings) return {present, {}};
-  ScannedTerrain both =
-      with_surroundings(present, make_swing_ground(surroundings_of(inputs, terrain), machine));
-  return {std::move(both.terrain), std::move(both.warnings)};
+  MotionGround ground{level_swing_ground(machine)};
+  ground.is_scanned = terrain.cloud.has_value();
+  if (terrain.frame) {
+    ground.pose = Eigen::Isometry3d(frame_named("--terrain-frame", *terrain.frame)).inverse();
+  }
+  if (!inputs.file || !leaves_the_dig(inputs)) return ground;
+  ground.ground = make_swing_ground(terrain, machine);
+  if (!inputs.surroundings) return ground;
+  ScannedTerrain both = with_surroundings(
+      ground.ground, make_swing_ground(surroundings_of(inputs, terrain), machine));
+  ground.ground = std::move(both.terrain);
+  ground.warnings = std::move(both.warnings);
+  return ground;
 }
 
 void set_standing(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
@@ -232,6 +235,9 @@ Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const 
 }
 
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
+  const char* on = planned.ground.is_scanned ? "as scanned" : "level, clear ground assumed";
+  outcome.json["ground"] = on;
+  if (planned.plan.dig) outcome.lines.push_back(std::string("ground       ") + on);
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =
       naming_options(option_names, [&] { return motion_of(inputs, planned); });

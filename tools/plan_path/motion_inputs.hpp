@@ -28,11 +28,20 @@ struct MotionInputs {
 
 void declare_motion(Arguments& arguments, MotionInputs& inputs);
 
+/// Ground that a motion must be clear of, and where its machine stands.
+struct MotionGround {
+  Terrain ground;
+  std::vector<Warning> warnings = {};  ///< of the scans together
+  bool is_scanned = false;             ///< else it is taken to be level and clear
+  /// Of the machine in the frame of the cloud.
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+
 /// Ground that the motion must be clear of, where it leaves the dig: that of `terrain`, and what it
 /// does not see of --surroundings, with warnings of both together. Checks all of the inputs before
 /// the work. @throws Error as make_site(), or (bad_input) naming the option
-Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
-                   const CycleOptions& cycle);
+MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
+                           const TerrainInput& terrain, const CycleOptions& cycle);
 
 /// How the machine stands, and with --terrain on what: PlanOptions::attitude and standing_on, which
 /// is of both clouds as well.
@@ -43,18 +52,18 @@ void set_standing(const MotionInputs& inputs, const Machine& machine, const Terr
 /// height.
 struct PlannedMotion {
   const Machine& machine;
-  const Site& ground;  ///< motion_ground(): the dig's ground is a strip of it
+  const MotionGround& ground;  ///< motion_ground(): the dig's ground is a strip of it
   const DigPlan& plan;
   const DigObjective& objective;
-  const TerrainInput& terrain;
 };
 
 /// That of the dig alone, for pages: the points of a file without present joints or whole cycle.
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan);
 
 /// Writes the motion, if it is asked for; one without points if there is no dig, or the ground is
-/// in the way (warning no_motion), so that none of an earlier plan is driven. Sets key "trajectory"
-/// of the outcome and adds the motion's warnings. @throws Error (bad_input) naming the option
+/// in the way (warning no_motion), so that none of an earlier plan is driven. Sets keys "ground"
+/// and "trajectory" of the outcome and adds the motion's warnings. @throws Error (bad_input) naming
+/// the option
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome);
 
 }  // namespace excavplan::tools

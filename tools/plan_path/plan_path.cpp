@@ -110,7 +110,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Site site = make_site(inputs.terrain, planning_extent(machine),
                               inputs.cell_size.value_or(usual_cell(machine)));
   PlanOptions options = options_of(inputs, machine, soil, console);
-  const Site area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
+  const auto area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
   set_standing(inputs.motion, machine, inputs.terrain, options);
   const Terrain* const scanned = inputs.terrain.cloud ? &site.ground : nullptr;
   DigPlan plan = naming_options(search_option_names, [&] {
@@ -125,19 +125,15 @@ Outcome work(const Inputs& inputs, Console& console) {
     outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
   }
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
-  const char* ground = inputs.terrain.cloud ? "as scanned" : "level, clear ground assumed";
-  if (plan.dig) outcome.lines.push_back(std::string("ground       ") + ground);
   outcome.json = plan_json(plan, density, options.search.objective);
-  outcome.json.update({{"ground", ground},
-                       {"trustworthy", outcome.trustworthy},
+  outcome.json.update({{"trustworthy", outcome.trustworthy},
                        {"soil", soil.name},
                        {"machine", machine.name},
                        {"simulator", options.simulator.word},
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
-  write_motion(inputs.motion, {machine, area, plan, options.search.objective, inputs.terrain},
-               outcome);
+  write_motion(inputs.motion, {machine, area, plan, options.search.objective}, outcome);
   if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(
