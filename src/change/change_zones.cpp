@@ -28,7 +28,8 @@ constexpr int stable = -1;
 /// [cells], and what of them it fills at least; ours.
 constexpr std::array<Eigen::Index, 3> layer_windows = {2, 5, 10};
 constexpr double least_layer_share = 0.5;
-constexpr double highest_crumb = 0.03;  // ours: of one cell among stable ones [m]
+constexpr std::size_t most_means = 4000;  // ours: that tell their scatter
+constexpr double highest_crumb = 0.03;    // ours: of one cell among stable ones [m]
 
 /// The densest quarter of the values: finds stable ground even where most of it changed. Where two
 /// quarters are equally dense, as on maps without noise, the one nearer to zero is taken.
@@ -293,13 +294,15 @@ class ChangeFinder {
     const AreaSums changes(change);
     const AreaSums counts(count);
     const auto cells = static_cast<double>((2 * radius + 1) * (2 * radius + 1));
+    const std::size_t stride = 1 + known_cells_ / most_means;
+    std::size_t seen = 0;
     Eigen::ArrayXXd mean = Eigen::ArrayXXd::Constant(change.rows(), change.cols(), nan);
     std::vector<double> means;
     for_each_cell(mean, [&](Cell cell) {
       const double known = counts.around(cell, radius);
       if (count(cell.row, cell.col) == 0.0 || known < least_layer_share * cells) return;
       mean(cell.row, cell.col) = changes.around(cell, radius) / known;
-      means.push_back(mean(cell.row, cell.col));
+      if (seen++ % stride == 0) means.push_back(mean(cell.row, cell.col));
     });
     if (means.size() < fewest_stable_cells) return false;
     const Spread spread = robust_spread(std::move(means));

@@ -188,6 +188,10 @@ void blank_faces(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after) {
 /// cells are as high as the points of a face that fell into them, which no two scans share.
 void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell_size) {
   constexpr double beside = 1.5;  // cells
+  const Eigen::ArrayXXd lower = before.min(after);
+  const double range =
+      lower.isNaN().select(-1e30, lower).maxCoeff() - lower.isNaN().select(1e30, lower).minCoeff();
+  if (range < least_excess) return;
   const Eigen::ArrayXXd of_both =
       excess_of(before, cell_size).min(excess_of(after, cell_size));  // NaN: not in both
   std::vector<Cell> cells;

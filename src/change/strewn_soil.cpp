@@ -7,8 +7,8 @@
 #include <cstddef>
 
 #include "base/angles.hpp"
+#include "base/normal_equations.hpp"
 #include "ground/grid_cells.hpp"
-#include "ground/registration.hpp"
 #include "ground/slopes.hpp"
 
 namespace excavplan {
@@ -17,18 +17,21 @@ namespace {
 constexpr double near_soil = 0.6;       // ours: from hole, spill or heap [m]
 constexpr double clip = 4.0;            // sd of a cell
 constexpr double highest_crumb = 0.03;  // ours [m]
+constexpr double fewest_far = 100.0;    // ours: cells
 
-/// Of some cells.
-struct CellSum {
-  double cells = 0.0;
-  double change = 0.0;
-  Motion effect = Motion::Zero();
+/// A volume and its variance by source [m^3, m^6].
+struct OutsideSum {
+  double volume = 0.0;
+  double noise = 0.0;
+  double correlated = 0.0;
+  double datum = 0.0;
 
-  double mean() const { return change / cells; }
+  double sd() const { return std::sqrt(noise + correlated + datum); }
 };
 
-/// Over stable ground near the zones of the dig less that farther away, and its variance.
-Measured outside_of(const Area& area) {
+/// Over stable ground near the zones of the dig above a plane through that farther away, whose
+/// error is that of the datum.
+OutsideSum outside_of(const Area& area) {
   const ChangedGround& ground = area.ground;
   Mask counted = Mask::Constant(ground.zone.rows(), ground.zone.cols(), false);
   for_each_cell(ground.zone, [&](Cell at) {
@@ -39,23 +42,30 @@ Measured outside_of(const Area& area) {
   if (!counted.any()) return {};
   const Eigen::ArrayXXd away = distance_to(counted) * area.grid.cell_size;
   const double bound = std::max(clip * ground.noise_sd, highest_crumb);
-  CellSum near;
-  CellSum far;
+  using Terms = NormalEquations<3>::Vector;
+  NormalEquations<3> far;
+  Terms near = Terms::Zero();
+  double change = 0.0;
+  double far_cells = 0.0;
   for_each_cell(ground.zone, [&](Cell at) {
     if (std::isnan(ground.residual(at.row, at.col)) || area.unknown(at.row, at.col) != 0) return;
-    CellSum& sum = away(at.row, at.col) < near_soil ? near : far;
-    const Eigen::Vector3d place(area.grid.x(at.col), area.grid.y(at.row), area.left.centre.z());
-    sum.cells += 1.0;
-    sum.change += std::clamp(ground.difference(at.row, at.col), -bound, bound);
-    sum.effect += motion_effect(place - area.left.centre, Eigen::Vector2d::Zero());
+    const double here = std::clamp(ground.difference(at.row, at.col), -bound, bound);
+    const Terms terms(1.0, static_cast<double>(at.col) / static_cast<double>(away.cols()) - 0.5,
+                      static_cast<double>(at.row) / static_cast<double>(away.rows()) - 0.5);
+    if (away(at.row, at.col) < near_soil) {
+      near += terms;
+      change += here;
+    } else {
+      far.add(terms, here);
+      far_cells += 1.0;
+    }
   });
-  if (near.cells == 0.0 || far.cells == 0.0) return {};
-  const double cell_area = area.grid.cell_size * area.grid.cell_size;
-  const double share = near.cells / far.cells;
-  const Motion effect = near.effect - share * far.effect;
+  if (near(0) == 0.0 || far_cells < fewest_far) return {};
   const double noise = area.noise.large_area_variance(area.grid.cell_size);
-  const double variance = near.cells * (1.0 + share) * noise + effect.dot(area.left.left * effect);
-  return {cell_area * near.cells * (near.mean() - far.mean()), cell_area * std::sqrt(variance)};
+  const double squared = std::pow(area.grid.cell_size, 4);
+  return {area.grid.cell_size * area.grid.cell_size * (change - near.dot(far.solution())),
+          squared * near(0) * area.noise.white, squared * near(0) * (noise - area.noise.white),
+          squared * noise * near.dot(far.covariance() * near)};
 }
 
 double density_of_normal(double value, double sd) {
@@ -63,36 +73,50 @@ double density_of_normal(double value, double sd) {
 }
 
 /// The soil in a sum, where a share of digs strews some.
-Measured expected_soil(const Measured& sum, double rose) {
+struct StrewnSoil {
+  double volume = 0.0;
+  double by_sum = 0.0;     ///< variance by the error of the sum
+  double by_chance = 0.0;  ///< and by not knowing whether there is any
+};
+
+StrewnSoil expected_soil(const OutsideSum& sum, double rose) {
   constexpr double strewn = 0.3;  // ours: of digs
   constexpr double usual = 0.02;  // ours: sd of what they strew, of what rose
   const double prior_sd = usual * rose;
-  if (!(sum.sd > 0.0) || !(prior_sd > 0.0)) return {};
-  const double variance = sum.sd * sum.sd + prior_sd * prior_sd;
-  const double some = strewn * density_of_normal(sum.value, std::sqrt(variance));
-  const double none = (1.0 - strewn) * density_of_normal(sum.value, sum.sd);
+  const double sd = sum.sd();
+  if (!(sd > 0.0) || !(prior_sd > 0.0)) return {};
+  const double variance = sd * sd + prior_sd * prior_sd;
+  const double some = strewn * density_of_normal(sum.volume, std::sqrt(variance));
+  const double none = (1.0 - strewn) * density_of_normal(sum.volume, sd);
   const double likely = some + none > 0.0 ? some / (some + none) : 1.0;
-  const double mean = sum.value * prior_sd * prior_sd / variance;
-  const double within = sum.sd * sum.sd * prior_sd * prior_sd / variance;
+  const double mean = sum.volume * prior_sd * prior_sd / variance;
+  const double within = sd * sd * prior_sd * prior_sd / variance;
   const double value = std::max(0.0, likely * mean);  // no soil is less than none
-  return {value, std::sqrt(std::max(0.0, likely * (within + mean * mean) - value * value))};
+  return {value, likely * within, std::max(0.0, likely * mean * mean - value * value)};
 }
 
 }  // namespace
 
 void add_strewn_soil(const std::vector<Area>& areas, VolumeChange& change) {
-  double variance = 0.0;
+  OutsideSum sum;
   for (const Area& area : areas) {
-    const Measured outside = outside_of(area);
-    change.outside.value += outside.value;
-    variance += outside.sd * outside.sd;
+    const OutsideSum outside = outside_of(area);
+    sum.volume += outside.volume;
+    sum.noise += outside.noise;
+    sum.correlated += outside.correlated;
+    sum.datum += outside.datum;
   }
-  change.outside.sd = std::sqrt(variance);
-  const Measured soil = expected_soil(change.outside, change.after.value);
-  change.strewn = soil;
-  change.spilled.value += soil.value;
-  change.after.value += soil.value;
-  change.errors.thin(1, 1) += soil.sd * soil.sd;
+  const StrewnSoil soil = expected_soil(sum, change.after.value);
+  change.outside = {sum.volume, sum.sd()};
+  change.strewn = {soil.volume, std::sqrt(soil.by_sum + soil.by_chance)};
+  change.spilled.value += soil.volume;
+  change.after.value += soil.volume;
+  change.errors.thin(1, 1) += soil.by_chance;
+  if (!(sum.sd() > 0.0)) return;
+  const double share = soil.by_sum / (sum.sd() * sum.sd());
+  change.errors.noise(1, 1) += share * sum.noise;
+  change.errors.correlated(1, 1) += share * sum.correlated;
+  change.errors.datum(1, 1) += share * sum.datum;
 }
 
 }  // namespace excavplan

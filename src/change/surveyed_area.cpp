@@ -382,7 +382,6 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.noise.white = std::max(area.noise.white, least_noise * least_noise);
   sum_own_errors(area, pair, scans, scans.variance_of(share), options);
   predict_errors(area, scans.before, left);
-  area.left = left;
   area.outliers = outlier_volumes(pair, area);
   area.errors.correlated += systematic.left * cell_area * cell_area;
   area.errors.correlated += area.outliers * area.outliers.transpose();

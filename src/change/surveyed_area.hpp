@@ -50,7 +50,6 @@ struct Area {
   ZoneErrors errors;
   Eigen::VectorXd outliers;     // what they leave in each zone, in `errors` too [m^3]
   NoiseModel noise;             // of stable cells
-  Alignment left;               // motion that may be left
   Eigen::ArrayXXd variance;     // of each cell's difference, without the datum [m^2]
   double systematic_rms = 0.0;  // of stripes and doming that were taken off [m]
   std::vector<Object> objects;
