@@ -127,14 +127,17 @@ set(thorough_tools_test
   Tools/EveryTool.SaysThatItsOutputCannotBeWritten/machine_kit
   Tools/EveryTool.EndsQuietlyWhereNobodyReadsItsOutput/machine_kit)
 
-# excavplan_discover_tests(PROGRAM): its tests by name, the thorough ones with their label.
+# excavplan_discover_tests(PROGRAM): its tests by name, the thorough ones with their label, the others
+# with that of their room.
 function(excavplan_discover_tests program)
+  string(REGEX REPLACE "_test$" "" room ${program})
   list(JOIN thorough_${program} ":" filter)
   if(NOT filter)
-    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60)
+    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${room})
     return()
   endif()
-  gtest_discover_tests(${program} TEST_FILTER "-${filter}" DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${program} TEST_FILTER "-${filter}" DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS ${room})
   gtest_discover_tests(${program} TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60
     TEST_LIST ${program}_thorough PROPERTIES LABELS thorough)
 endfunction()

@@ -152,12 +152,17 @@ class Matcher {
     const Eigen::Matrix3d back =
         Eigen::AngleAxisd(-motion.turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     const Eigen::Vector3d turned = back * normal_of(two_);
+    const Eigen::Vector3d normal = normal_of(one_);
+    // From one normal to the other; both point upwards, so they are never opposite.
+    Eigen::Quaterniond tilt;
+    tilt.w() = std::sqrt(0.5 * (1.0 + normal.dot(turned)));
+    tilt.vec() = turned.cross(normal) / (2.0 * tilt.w());
     const Eigen::Vector2d moved = centre_ + motion.shift;
     const Eigen::Vector3d from(moved.x(), moved.y(), two_.plane_at(moved));
     const Eigen::Vector3d to(centre_.x(), centre_.y(), one_.plane_at(centre_));
     Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
     result.translate(to);
-    result.rotate(Eigen::Quaterniond::FromTwoVectors(turned, normal_of(one_)));
+    result.rotate(tilt);
     result.rotate(back);
     result.translate(-from);
     return result.matrix();
