@@ -390,7 +390,7 @@ class ScanReader {
                    topic_.name + " at " + time_text(topic_, first().time) +
                        ": half of its depths lie beyond " + readable(middle_depth_, 3) +
                        " m as counts of 1 mm, farther than depth cameras see: give the unit of its "
-                       "counts by --depth-unit, such as " +
+                       "counts by `depth_unit`, such as " +
                        units);
   }
   bool is_sensor_frame() const {

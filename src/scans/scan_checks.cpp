@@ -121,7 +121,7 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
     const bool is_y = std::abs(seen.normal.y()) > std::cos(steepest);
     return Warning{WarningCode::frame, name_of(scan) + ": the ground lies at " + degrees(off) +
                                            " to level, so z is not up" +
-                                           (is_y ? "; if y is, give --frame y-up; else " : ": ") +
+                                           (is_y ? "; if y is, give `frame` y-up; else " : ": ") +
                                            give_frames};
   }
   if (scan.z_is_up || scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;

@@ -41,9 +41,9 @@ void require_unit(const Scan& scan, const std::string& file, const CloudShape& s
               file + ": found coordinates in units of " + number_text(*shape.unit) +
                   " m by its coordinate system, but they are read in units of " +
                   number_text(scan.unit) + " m: give " +
-                  (is_foot              ? "--unit ft"
-                   : *shape.unit == 1.0 ? "--unit m"
-                                        : "the right --unit"));
+                  (is_foot              ? "`unit` ft"
+                   : *shape.unit == 1.0 ? "`unit` m"
+                                        : "the right `unit`"));
 }
 
 }  // namespace

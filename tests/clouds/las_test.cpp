@@ -391,7 +391,7 @@ TEST(ReadLas, GeographicCoordinatesAreNamed) {
 TEST(ReadLas, UnitsOfTheCoordinateSystemAreNamed) {
   const std::string give_feet =
       "m by its coordinate system, but they are read in units of 1 m: "
-      "give --unit ft";
+      "give `unit` ft";
   for (const std::string& error :
        {error_of_system(geokeys({{1024, 1}, {3076, 9002}}), false),
         error_of_system(geokeys({{1024, 1}, {3076, 9003}}), false),
@@ -401,7 +401,7 @@ TEST(ReadLas, UnitsOfTheCoordinateSystemAreNamed) {
   EXPECT_EQ(error_of_system(geokeys({{3076, 9003}}), false, 0.3048), "no error");
   EXPECT_EQ(error_of_system(projected("\"metre\",1"), true), "no error");
   EXPECT_EQ(error_of_system(geokeys({{1024, 1}, {3076, 9001}, {4099, 9001}}), false), "no error");
-  EXPECT_NE(error_of_system(projected("\"metre\",1"), true, 0.3048).find("give --unit m"),
+  EXPECT_NE(error_of_system(projected("\"metre\",1"), true, 0.3048).find("give `unit` m"),
             std::string::npos);
   EXPECT_NE(error_of_system("COMPD_CS[\"two\"," + projected("\"metre\",1") +
                                 ",VERT_CS[\"up\",VERT_DATUM[\"d\",2005],UNIT[\"foot\",0.3048]]]",

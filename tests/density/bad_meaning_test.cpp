@@ -208,7 +208,7 @@ TEST(BadMeaning, OrderAndUnits) {
       {"no_hole_found"});
   for (const auto& [unit, factor] : {std::pair("mm", 1e3), std::pair("cm", 1e2)}) {
     add(inputs, std::string("both in ") + unit,
-        [f = factor](DigScans& s, auto&) { map_both(s, scaled(f)); }, {"units", "--unit"});
+        [f = factor](DigScans& s, auto&) { map_both(s, scaled(f)); }, {"units", "`unit`"});
     add(inputs, std::string("the one after in ") + unit,
         [f = factor](DigScans& s, auto&) { map_points(s.after, scaled(f)); },
         {"units", "--after-unit"});
@@ -220,14 +220,14 @@ TEST(BadMeaning, OrderAndUnits) {
   add(inputs, "the one before in feet",
       [=](DigScans& s, auto&) { map_points(s.before, scaled(foot)); }, {"units", "-unit"});
   add(inputs, "metres said to be millimetres",
-      [](DigScans& s, auto&) { s.before.unit = s.after.unit = 1e-3; }, {"units", "--unit"});
+      [](DigScans& s, auto&) { s.before.unit = s.after.unit = 1e-3; }, {"units", "`unit`"});
   add(inputs, "in kilometres", [](DigScans& s, auto&) { map_both(s, scaled(1e-3)); },
-      {"units", "--unit"});
+      {"units", "`unit`"});
   add(inputs, "a million times too large", [](DigScans& s, auto&) { map_both(s, scaled(1e6)); },
-      {"units", "--unit"});
+      {"units", "`unit`"});
   add(inputs, "heights in cm, places in m",
       [](DigScans& s, auto&) { map_both(s, scaled(1.0, 1.0, 100.0)); },
-      {"units", "frame", "--unit", "tilted"});
+      {"units", "frame", "`unit`", "tilted"});
   expect_no_wrong_answer(inputs);
 }
 

@@ -423,7 +423,7 @@ TEST(RecordedScan, DepthsAreInTheUnitThatIsSaid) {
   ASSERT_EQ(wrong.warnings.size(), 1U);
   EXPECT_EQ(wrong.warnings[0].code, WarningCode::units);
   EXPECT_TRUE(wrong.warnings[0].ends_trust);
-  EXPECT_NE(wrong.warnings[0].message.find("--depth-unit, such as 0.25mm, which gives 4.1 m, or "
+  EXPECT_NE(wrong.warnings[0].message.find("`depth_unit`, such as 0.25mm, which gives 4.1 m, or "
                                            "0.125mm"),
             std::string::npos)
       << wrong.warnings[0].message;
