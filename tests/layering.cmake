@@ -156,9 +156,9 @@ function(check_manners file)
       message(SEND_ERROR "${file}: the library neither prints nor exits: ${line}")
     endif()
   endforeach()
-  # "JSON of a tool --json" is where a file is from, --filters is an option of pdal.
+  # "JSON of a tool --json" is where a file is from, --filters and --writers are of pdal.
   file(STRINGS ${ROOT}/${file} lines REGEX "\"[^\"]*--[a-z][a-z-]+[^\"]*\"")
-  list(FILTER lines EXCLUDE REGEX "--json\"|--filters|^ *//")
+  list(FILTER lines EXCLUDE REGEX "--json\"|--(filters|writers)|^ *//")
   foreach(line IN LISTS lines)
     message(SEND_ERROR "${file}: names an option of the tools, which these say of `its_name`: ${line}")
   endforeach()
