@@ -81,7 +81,7 @@ struct StrewnSoil {
 
 StrewnSoil expected_soil(const OutsideSum& sum, double rose) {
   constexpr double strewn = 0.3;  // ours: of digs
-  constexpr double usual = 0.02;  // ours: sd of what they strew, of what rose
+  constexpr double usual = 0.01;  // ours: sd of what no layer is found of, of what rose
   const double prior_sd = usual * rose;
   const double sd = sum.sd();
   if (!(sd > 0.0) || !(prior_sd > 0.0)) return {};
