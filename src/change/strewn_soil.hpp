@@ -20,7 +20,8 @@ namespace excavplan {
 ///
 /// What to expect: in 0.3 of digs there is such soil, normal with a deviation of 1 % of what rose;
 /// else there is none. The posterior mean is counted, the posterior variance is in the covariance,
-/// under the sources of the sum's error and `thin`. Both numbers are ours.
+/// under the sources of the sum's error and `thin`, with a tenth of the layers that were found as
+/// zones, for what their edges miss. All numbers are ours.
 void add_strewn_soil(const std::vector<Area>& areas, VolumeChange& change);
 
 }  // namespace excavplan
