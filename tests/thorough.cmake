@@ -73,7 +73,7 @@ set(thorough_scans_test
 set(thorough_density_test
   Families.StrewnSoilIsInNinetyTwoOfAHundredIntervals
   Families.OutliersNoDataAndFlatFloorsLoseTrustInThreeOfAHundredAtMost
-  Families.ForeignThingsAreTrustedAndOutsideInTwoOfAHundredAtMost
+  Families.ForeignThingsAreSeldomTrustedAndOutside
   RealPair.HalvesAgreeWithoutAnArea
   DensityByLoads.IntervalsHoldTheTruthInDigsOfTheOtherSimulator
   SoilAnswers.TheScatterOfALawIsThatOfDigsInLooseAndInDenseSoil

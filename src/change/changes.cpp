@@ -160,6 +160,8 @@ class ChangeReader {
   bool is_track(Place p) const { return tracks_[p.area].is_track[p.zone]; }
 
   bool is_berm(Place p) const {
+    const std::vector<bool>& ruts = tracks_[p.area].is_rut;
+    if (std::find(ruts.begin(), ruts.end(), true) == ruts.end()) return false;
     if (shape(p).height > highest_berm || is(p, heap_)) return false;
     if (part(p) == Part::tail && is_track(p) && !beside(p)) return true;
     return tracks_[p.area].lies_along(look(p)) && (shape(p).is_strip() || part(p) == Part::tail);

@@ -81,7 +81,7 @@ struct StrewnSoil {
 
 StrewnSoil expected_soil(const OutsideSum& sum, double rose) {
   constexpr double strewn = 0.3;  // ours: of digs
-  constexpr double usual = 0.02;  // ours: sd of what they strew, of what rose
+  constexpr double usual = 0.01;  // ours: sd of what no layer is found of, of what rose
   const double prior_sd = usual * rose;
   const double sd = sum.sd();
   if (!(sd > 0.0) || !(prior_sd > 0.0)) return {};
@@ -95,11 +95,24 @@ StrewnSoil expected_soil(const OutsideSum& sum, double rose) {
   return {value, likely * within, std::max(0.0, likely * mean * mean - value * value)};
 }
 
+/// Volume of the layers that were found and counted.
+double layers_of(const Area& area) {
+  double volume = 0.0;
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    const bool is_counted = area.kinds[i] != ZoneKind::other;
+    if (is_counted && area.ground.zone_is_layer[i]) volume += area.zones[i].volume;
+  }
+  return volume;
+}
+
 }  // namespace
 
 void add_strewn_soil(const std::vector<Area>& areas, VolumeChange& change) {
+  constexpr double missed = 0.1;  // ours: of a layer, at its edges and in crumbs
   OutsideSum sum;
+  double layers = 0.0;
   for (const Area& area : areas) {
+    layers += layers_of(area);
     const OutsideSum outside = outside_of(area);
     sum.volume += outside.volume;
     sum.noise += outside.noise;
@@ -111,7 +124,7 @@ void add_strewn_soil(const std::vector<Area>& areas, VolumeChange& change) {
   change.strewn = {soil.volume, std::sqrt(soil.by_sum + soil.by_chance)};
   change.spilled.value += soil.volume;
   change.after.value += soil.volume;
-  change.errors.thin(1, 1) += soil.by_chance;
+  change.errors.thin(1, 1) += soil.by_chance + std::pow(missed * layers, 2);
   if (!(sum.sd() > 0.0)) return;
   const double share = soil.by_sum / (sum.sd() * sum.sd());
   change.errors.noise(1, 1) += share * sum.noise;
