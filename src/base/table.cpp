@@ -3,7 +3,6 @@
 #include "base/table.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <excavplan/base/error.hpp>
 

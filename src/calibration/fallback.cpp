@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>

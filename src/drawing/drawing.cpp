@@ -3,7 +3,6 @@
 #include "drawing/drawing.hpp"
 
 #include <charconv>
-#include <cmath>
 
 namespace excavplan {
 namespace {

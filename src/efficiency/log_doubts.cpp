@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "base/statistics.hpp"
 #include "base/text.hpp"

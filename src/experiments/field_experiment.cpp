@@ -3,7 +3,6 @@
 #include <excavplan/experiments/field_experiment.hpp>
 
 #include <atomic>
-#include <utility>
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"

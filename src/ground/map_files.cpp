@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/ground/map_files.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>

@@ -3,7 +3,6 @@
 #include <excavplan/kit/machine_kit.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/base/warning.hpp>

@@ -3,7 +3,6 @@
 #include "logs/log_columns.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include <excavplan/base/error.hpp>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planning/dig_layout.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>

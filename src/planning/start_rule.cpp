@@ -3,7 +3,6 @@
 #include "planning/start_rule.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "results/scene_results.hpp"
 
-#include <string>
-
 #include "base/json.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/planned_digs.hpp"

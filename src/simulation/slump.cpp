@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <type_traits>
 
 #include <excavplan/base/error.hpp>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <memory>
 #include <utility>
 
 #include <excavplan/scans/scan_surface.hpp>

@@ -3,7 +3,6 @@
 #include "simulate_dig/fuel_log.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include <excavplan/base/data_files.hpp>
