@@ -71,7 +71,7 @@ set(thorough_scans_test
   OneStandpoint.TellsItsPlaceByThePointsOnSlopes)
 # Intervals over many soils and digs.
 set(thorough_density_test
-  Families.StrewnSoilIsInNinetyTwoOfAHundredIntervals
+  Families.StrewnSoilIsInMostIntervals
   Families.OutliersNoDataAndFlatFloorsLoseTrustInThreeOfAHundredAtMost
   Families.ForeignThingsAreSeldomTrustedAndOutside
   RealPair.HalvesAgreeWithoutAnArea
