@@ -107,14 +107,12 @@ struct Machine {
   double full_length() const { return boom_length + arm_length + bucket_length; }
   /// From the swing axis to the corner of the bucket furthest from it [m]; rounded up.
   double swing_reach() const;
-  /// Over both tracks [m]: track_width, without it as the zx120's in proportion to track_front;
-  /// ours.
+  /// track_width [m]; without it as the zx120's in proportion to track_front, ours.
   double undercarriage_width() const;
   /// Unit vector against gravity in the boom plane, as far as it lies in it: (0, 1) if level.
   /// @param swung  of the upper structure to the left [rad]
   Eigen::Vector2d up(double swung = 0.0) const;
-  /// Of the counterweight about the swing axis [m]: tail_radius, without it 1.35 times track_front;
-  /// ours, above the 1.18 of the zx120.
+  /// tail_radius [m]; without it 1.35 times track_front, ours, above the 1.18 of the zx120.
   double tail_swing_radius() const;
   /// Angle between bucket floor and the line from tip to bucket pin [rad]; Error without a profile.
   double beta() const;

@@ -37,8 +37,7 @@ struct Scan {
   bool z_is_up = false;   ///< is known, so that no frame of a camera is suspected
   std::string name = {};  ///< for messages; empty: that of its first file
   std::shared_ptr<const MachineFront> machine = {};  ///< points that it holds are left out
-  /// Heights in the frame and unit of the files that mean "none": such points are left out.
-  std::vector<double> no_data = {};
+  std::vector<double> no_data = {};  ///< heights of the files that mean "none"; left out
   /// What is doubtful about its points, as who made them knows (RecordedScan::warnings): becomes
   /// part of every result.
   std::vector<Warning> doubts = {};
@@ -63,8 +62,7 @@ struct ScanOutline {
   double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
   double height_step = 0.0;         ///< of heights that were rounded; 0: they were not [m]
   double height = 0.0;  ///< from the lowest to the highest point but 0.1 % on either side [m]
-  /// Share of the points that lie as a depth camera sees them from the origin: within 60 degrees of
-  /// the z axis, at 0.1 to 20 m along it [-].
+  /// Share of the points within 60 degrees of z, 0.1 to 20 m along it, as a depth camera sees [-].
   double seen_along_z = 0.0;
   /// Direction in which the points scatter least, z >= 0: the normal of the ground.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -116,8 +114,7 @@ double survey_cell(const std::vector<ScanOutline>& outlines);
 Surface survey_surface(const Scan& scan, const Rectangle& extent,
                        const RasterOptions& options = {});
 
-/// One surface for each scan on one grid, found in parallel (0 threads: one per core); the same
-/// for any number of threads.
+/// One surface for each scan on one grid, in parallel (0: one per core); the same for any threads.
 std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
                                      const RasterOptions& options = {}, unsigned threads = 0);
 
