@@ -173,7 +173,12 @@ Outcome with_options(const std::vector<Arguments::Entry>& entries,
   }
 }
 
-int run(int argc, const char* const* argv, const About& about,
+struct CommandWords {
+  int count;
+  const char* const* words;
+};
+
+int run(const CommandWords& command, const About& about,
         const std::function<void(Arguments&)>& declare,
         const std::function<Outcome(Console&)>& work, StandardInput& input) {
   Arguments arguments;
@@ -182,7 +187,7 @@ int run(int argc, const char* const* argv, const About& about,
   const std::size_t own = arguments.entries().size();
   declare_common(arguments, about, common);
 
-  ParsedWords words = sort_words(argc, argv, arguments.entries());
+  ParsedWords words = sort_words(command.count, command.words, arguments.entries());
   const auto given = [&](const std::string& name) {
     const auto& entries = arguments.entries();
     const auto at = std::find_if(entries.begin(), entries.end(),
@@ -294,7 +299,7 @@ int run_tool(int argc, const char* const* argv, const About& about,
   }
   const EndGuard guard;
   StandardInput input;
-  return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
+  return reported(about, input, [&] { return run({argc, argv}, about, declare, work, input); });
 }
 
 int without_memory(const About& about) {

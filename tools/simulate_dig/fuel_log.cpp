@@ -27,24 +27,31 @@ double power_of(const CycleShare& share) {
   return share.time > 0.0 ? share.energy / share.time : 0.0;
 }
 
+struct Movement {
+  const char* phase;
+  const CycleShare& share;
+};
+
 /// Two movements, the first from the begin on, the second up to the end.
-void add_overlapping(std::vector<Stretch>& stretches, double duration, const CycleShare& first,
-                     const char* first_phase, const CycleShare& second, const char* second_phase) {
-  const double begin_of_second = std::max(0.0, duration - second.time);
-  const double alone = std::min(first.time, begin_of_second);
-  const double both = std::max(0.0, std::min(first.time, duration) - begin_of_second);
-  stretches.push_back({first_phase, alone, power_of(first)});
-  stretches.push_back({second_phase, both, power_of(first) + power_of(second)});
-  stretches.push_back({second_phase, std::max(0.0, duration - alone - both), power_of(second)});
+void add_overlapping(std::vector<Stretch>& stretches, double duration, const Movement& first,
+                     const Movement& second) {
+  const double begin_of_second = std::max(0.0, duration - second.share.time);
+  const double alone = std::min(first.share.time, begin_of_second);
+  const double both = std::max(0.0, std::min(first.share.time, duration) - begin_of_second);
+  const double power = power_of(first.share);
+  const double power_of_second = power_of(second.share);
+  stretches.push_back({first.phase, alone, power});
+  stretches.push_back({second.phase, both, power + power_of_second});
+  stretches.push_back({second.phase, std::max(0.0, duration - alone - both), power_of_second});
 }
 
 void add_rest_of_cycle(std::vector<Stretch>& stretches, const DigCycle& cycle) {
   const double back = std::max(cycle.back.time, cycle.lower.time);
   const double to_dump =
       cycle.total.time - cycle.dig.time - cycle.dump.time - back - cycle.rest.time;
-  add_overlapping(stretches, to_dump, cycle.lift, "lift", cycle.swing, "swing");
+  add_overlapping(stretches, to_dump, {"lift", cycle.lift}, {"swing", cycle.swing});
   stretches.push_back({"dump", cycle.dump.time, power_of(cycle.dump)});
-  add_overlapping(stretches, back, cycle.back, "return", cycle.lower, "return");
+  add_overlapping(stretches, back, {"return", cycle.back}, {"return", cycle.lower});
 }
 
 std::vector<Stretch> stretches_of(const Machine& machine, const DigScene& scene) {
