@@ -106,6 +106,7 @@ void summarise(FieldResult& result, std::uint64_t seed) {
   }
   const auto mean = [&](auto value) {
     std::vector<double> values;
+    values.reserve(telling.size());
     for (const FieldRun* run : telling) values.push_back(value(*run));
     return bootstrap_mean(values, seed);
   };
