@@ -85,18 +85,16 @@ class Matcher {
   }
 
   std::optional<Eigen::Matrix4d> find() {
-    PlanMotion best;
-    double least = std::numeric_limits<double>::infinity();
-    search({}, farthest, widest, first_step, first_turn, best, least);
+    Match best = improved({}, {farthest, widest, first_step, first_turn});
     double step = first_step;
     double turn = first_turn;
     for (int i = 0; i < refinements; ++i) {
       step *= 0.5;
       turn *= 0.5;
-      search(best, step, turn, step, turn, best, least);
+      best = improved(best, {step, turn, step, turn});
     }
-    if (!std::isfinite(least)) return std::nullopt;
-    return correction(best);
+    if (!std::isfinite(best.difference)) return std::nullopt;
+    return correction(best.motion);
   }
 
  private:
@@ -105,23 +103,33 @@ class Matcher {
     double relief;
   };
 
-  /// All motions within `reach` and `turns` of `about`.
-  void search(PlanMotion about, double reach, double turns, double step, double turn,
-              PlanMotion& best, double& least) {
-    const int across = static_cast<int>(std::lround(reach / step));
-    const int around = static_cast<int>(std::lround(turns / turn));
+  struct Match {
+    PlanMotion motion;
+    double difference = std::numeric_limits<double>::infinity();
+  };
+
+  /// Motions that are tried around one.
+  struct Steps {
+    double reach, turns;  ///< furthest
+    double step, turn;    ///< from one to the next
+  };
+
+  /// The best of a match and the motions around it.
+  Match improved(const Match& about, const Steps& steps) {
+    Match best = about;
+    const int across = static_cast<int>(std::lround(steps.reach / steps.step));
+    const int around = static_cast<int>(std::lround(steps.turns / steps.turn));
     for (int k = -around; k <= around; ++k) {
       for (int i = -across; i <= across; ++i) {
         for (int j = -across; j <= across; ++j) {
-          const PlanMotion tried = {about.shift + step * Eigen::Vector2d(i, j),
-                                    about.turn + turn * k};
+          const PlanMotion tried = {about.motion.shift + steps.step * Eigen::Vector2d(i, j),
+                                    about.motion.turn + steps.turn * k};
           const double left = difference(tried);
-          if (left >= least) continue;
-          least = left;
-          best = tried;
+          if (left < best.difference) best = {tried, left};
         }
       }
     }
+    return best;
   }
 
   /// Lower quartile of the differences from their median [m].
