@@ -67,9 +67,9 @@ struct Overlay {
 
 /// The best partition of the heights into two, by least squares (Otsu 1979), where each part holds
 /// a tenth of the points and three, the upper lie among the lower in plan, and the means of the
-/// parts are 3 cm apart, no part scatters by over 0.6 of that, as outliers do, and either more than noise makes them, or explain 0.85 of the variance of
-/// twenty points or more: all ours. Soil and dust over it, or a scan that holds the ground of two
-/// times.
+/// parts are 3 cm apart, no part scatters by over 0.6 of that, as outliers do, and either more than
+/// noise makes them, or explain 0.85 of the variance of twenty points or more: all ours. Soil and
+/// dust over it, or a scan that holds the ground of two times.
 ///
 /// @param slope of the ground [m/cell]
 /// @param by_noise that noise may set them apart [m]
