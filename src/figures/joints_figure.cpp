@@ -53,10 +53,12 @@ void draw_joint(Panel& panel, const RobotJoint& joint, const JointLimits& limits
 std::string note_of(const Machine& machine) {
   const char* const words[] = {"boom", "arm", "bucket", "swing"};
   std::string text = "All joints of the robot at zero. Angles of excavplan, in rad: ";
+  const char* comma = "";
   for (std::size_t i = 0; i < machine.robot_joints.size(); ++i) {
     const auto& [name, sign, zero] = machine.robot_joints[i];
     if (name.empty()) continue;
-    text += (i == 0 ? "" : ", ") + std::string(words[i]) + " = " + (sign < 0.0 ? "-" : "") + name;
+    text += comma + std::string(words[i]) + " = " + (sign < 0.0 ? "-" : "") + name;
+    comma = ", ";
     if (zero != 0.0) text += (zero < 0.0 ? " - " : " + ") + readable(std::abs(zero));
   }
   const Eigen::Vector3d at = machine.site_from_root.translation();

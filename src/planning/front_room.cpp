@@ -72,7 +72,8 @@ FrontRoom::FrontRoom(const Terrain& terrain, const Machine& machine)
   const double half = 0.5 * machine.bucket.width_outside + margin;
   const HeightMap standing = {surface.origin, surface.cell_size, terrain.obstacles};
   for (Index col = 0; col < standing.z.cols(); ++col) {
-    standing_.push_back(height_within(standing, col, half));
+    const bool ahead = standing.x(col) > machine.track_front;  // else it is the machine itself
+    standing_.push_back(ahead ? height_within(standing, col, half) : nothing);
   }
   standing_ = widened(standing_, cell_size_);
   for (std::size_t i = 0; i < standing_.size(); ++i) {

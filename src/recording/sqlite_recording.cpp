@@ -368,7 +368,8 @@ std::optional<std::int64_t> SqliteRecording::next_readable(std::int64_t row) {
   std::int64_t damaged = std::max<std::int64_t>(row, 0);
   std::int64_t good = 0;
   std::optional<std::int64_t> next;
-  for (std::int64_t step_size = 1; good == 0 && step_size < latest / 4; step_size *= 2) {
+  for (std::int64_t step_size = 1;
+       good == 0 && step_size < latest / 4 && damaged <= latest - step_size; step_size *= 2) {
     const Found found = look(damaged + step_size);
     if (found == Found::damage) damaged += step_size;
     if (found != Found::damage) good = damaged + step_size;

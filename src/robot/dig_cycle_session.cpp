@@ -383,7 +383,7 @@ void DigCycleSession::State::add_age(CyclePlan& answer) const {
   constexpr double longest = 1e9;
   answer.stamp->scanned = scanned;
   answer.stamp->expires =
-      *scanned + static_cast<std::int64_t>(1e9 * std::min(longest, settings.oldest_scan));
+      later(*scanned, static_cast<std::int64_t>(1e9 * std::min(longest, settings.oldest_scan)));
 }
 
 std::string DigCycleSession::State::early_text() const {
@@ -612,7 +612,8 @@ std::vector<Warning> DigCycleSession::doubts_of(const std::optional<PlanStamp>& 
            "it is of plan " + in_quotes(stamp->id) +
                (state.plan_id.empty() ? ", and none is waiting here"
                                       : ", the last plan here is " + state.plan_id));
-  } else if (!stamp->pose.isApprox(pose, same)) {
+  } else if (!((stamp->pose.translation() - pose.translation()).norm() <= same &&
+               (stamp->pose.linear() - pose.linear()).norm() <= same)) {
     refuse(WarningCode::foreign_plan, "the machine stood elsewhere when it was planned");
   }
   if (stamp->expires && state.now && *state.now > *stamp->expires) {

@@ -92,8 +92,10 @@ class SoilResistance {
     const double loose_above = cut.ground.surface - cut.ground.bank + cut.pile;
     const double all_depth = bank_depth + loose_above * std::cos(alpha);
     if (!(all_depth > 0.0)) return;
-    const Ahead ahead = bank_depth > 0.0 ? Ahead{cut.bank, bank_depth, alpha, loose_above}
-                                         : Ahead{in_loose(cut.bank), all_depth, alpha, 0.0};
+    const Eigen::Vector2d up = model_.machine.up();
+    const double slope = alpha - std::atan2(up.x(), up.y());  // as gravity sees it
+    const Ahead ahead = bank_depth > 0.0 ? Ahead{cut.bank, bank_depth, slope, loose_above}
+                                         : Ahead{in_loose(cut.bank), all_depth, slope, 0.0};
     const double climb = std::asin(std::clamp(cut.motion.y(), -1.0, 1.0));
     const double frame = std::max(alpha, climb);
     SlidingFace on = {cut.tip.floor_angle, false};

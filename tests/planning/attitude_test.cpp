@@ -13,7 +13,7 @@
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/planning/plan_motion.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "base/random.hpp"
@@ -123,14 +123,14 @@ TEST(Attitude, TheSwingMustHoldTheFrontOnASlope) {
 }
 
 /// In sand, which resists by its weight.
-DigResult dug_at(const Attitude& attitude) {
+DigResult dug_at(const Attitude& attitude, const SimulatorKind& kind = default_simulator()) {
   static const SoilKind sand = load_soil(find_data_file("soils/sand.json"));
   const Machine machine = with_attitude(zx120(), attitude);
   const Terrain level = level_planning_ground(machine);
   const auto path = make_dig_path(machine, paper_fixed_path(), 6.0, [](double) { return 0.0; });
   DigOptions options;
   options.history = true;
-  return HeightMapSimulator(machine, sand, 40.0).dig(level, std::get<DigPath>(path), options);
+  return kind.make(machine, sand, 40.0)->dig(level, std::get<DigPath>(path), options);
 }
 
 /// Of soil on the bucket against the drag, the mean [N].
@@ -144,12 +144,14 @@ double drag_of(const DigResult& result) {
   return sum / count;
 }
 
-TEST(Attitude, PullingSoilUphillTakesMoreThanDownhill) {
-  const DigResult level = dug_at({}), front_down = dug_at({0.0, 12.0 * degree}),
-                  front_up = dug_at({0.0, -12.0 * degree});
-  ASSERT_FALSE(level.stall || front_down.stall || front_up.stall);
-  EXPECT_GT(drag_of(front_down), 1.02 * drag_of(level));
-  EXPECT_LT(drag_of(front_up), 0.98 * drag_of(level));
+TEST(Attitude, PullingSoilUphillTakesMoreThanDownhillInBothSimulators) {
+  for (const SimulatorKind& kind : simulator_kinds()) {
+    const DigResult level = dug_at({}, kind), front_down = dug_at({0.0, 12.0 * degree}, kind),
+                    front_up = dug_at({0.0, -12.0 * degree}, kind);
+    ASSERT_FALSE(level.stall || front_down.stall || front_up.stall) << kind.name;
+    EXPECT_GT(drag_of(front_down), 1.02 * drag_of(level)) << kind.name;
+    EXPECT_LT(drag_of(front_up), 0.98 * drag_of(level)) << kind.name;
+  }
 }
 
 TEST(Attitude, ASteepSlopeLetsTheMachineSlideOrTip) {

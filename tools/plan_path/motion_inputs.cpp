@@ -210,6 +210,7 @@ MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
   if (terrain.frame) {
     ground.pose = Eigen::Isometry3d(frame_named("--terrain-frame", *terrain.frame)).inverse();
   }
+  if (!terrain.attitude.is_level()) ground.pose.rotate(terrain.attitude.to_site());
   if (!inputs.file || !leaves_the_dig(inputs)) return ground;
   ground.ground = make_swing_ground(terrain, machine);
   if (!inputs.surroundings) return ground;
