@@ -27,27 +27,37 @@ Points arc(const Vector2d& pin, double radius, double from, double to) {
 
 /// Two strokes at the end of a line.
 Points head(const Points& line, double size) {
-  const Vector2d end = line.back();
+  const Vector2d& end = line.back();
   const Vector2d back = size * (line[line.size() - 4] - end).normalized();
   const Vector2d side(-back.y(), back.x());
   return {end, end + back + 0.5 * side, end, end + back - 0.5 * side};
 }
 
-void draw_joint(Panel& panel, const RobotJoint& joint, const JointLimits& limits,
-                const Vector2d& pin, double before, double link, double length) {
+/// A joint and the link that it turns.
+struct DrawnJoint {
+  const RobotJoint& robot;
+  const JointLimits& limits;
+  const Vector2d& pin;
+  double before;  ///< direction of the link before [rad]
+  double link;    ///< direction of the link [rad]
+  double length;  ///< of the link [m]
+};
+
+void draw_joint(Panel& panel, const DrawnJoint& joint) {
+  const auto& [robot, limits, pin, before, link, length] = joint;
   constexpr double turn = 0.5;  // [rad]
   const double size = 0.07 * length;
   panel.line(arc(pin, 0.45 * length, before - limits.lower, before - limits.upper),
              {colours::blue, 1.2}, "range of the link");
   panel.strokes({pin, pin + 0.45 * length * Vector2d(std::cos(link), std::sin(link))},
                 {colours::black, 0.8}, "");
-  const Points way = arc(pin, 0.6 * length, link, link - turn * joint.sign);
+  const Points way = arc(pin, 0.6 * length, link, link - turn * robot.sign);
   panel.line(way, {colours::vermilion, 1.4}, "grows with the angle of the robot");
   panel.strokes(head(way, size), {colours::vermilion, 1.4});
   panel.label(
       pin + 0.75 * length *
-                Vector2d(std::cos(link - turn * joint.sign), std::sin(link - turn * joint.sign)),
-      joint.name);
+                Vector2d(std::cos(link - turn * robot.sign), std::sin(link - turn * robot.sign)),
+      robot.name);
 }
 
 std::string note_of(const Machine& machine) {
@@ -85,8 +95,8 @@ Figure joints_figure(const Machine& machine) {
   const std::array<double, 3> lengths = {machine.boom_length, machine.arm_length,
                                          machine.bucket_length};
   for (std::size_t i = 0; i < 3; ++i) {
-    draw_joint(panel, machine.robot_joints[i], machine.limits[i], pins[i], directions[i],
-               directions[i + 1], lengths[i]);
+    draw_joint(panel, {machine.robot_joints[i], machine.limits[i], pins[i], directions[i],
+                       directions[i + 1], lengths[i]});
   }
   panel.dots({at.tip}, 2.0, {colours::black, 0.5, colours::orange}, "tooth tip");
   const double room = 0.1 * machine.full_length();

@@ -254,8 +254,8 @@ void require_machine(const Machine& machine) {
   rules.positive("", "bucket_length", machine.bucket_length, longest);
   rules.in("", "track_front", machine.track_front, -longest, longest);
   constexpr double steepest = 0.8;  // [rad]; ours: no machine stands on 45 degrees
-  rules.in("", "attitude.roll", machine.attitude.roll, -steepest, steepest);
-  rules.in("", "attitude.pitch", machine.attitude.pitch, -steepest, steepest);
+  rules.in("", "attitude: roll [rad]", machine.attitude.roll, -steepest, steepest);
+  rules.in("", "attitude: pitch [rad]", machine.attitude.pitch, -steepest, steepest);
   if (machine.tail_radius) rules.positive("", "tail_radius", *machine.tail_radius, longest);
   if (machine.track_width) rules.positive("", "track_width", *machine.track_width, longest);
   for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {

@@ -66,7 +66,10 @@ class Parser {
   /// The name of the file that a xacro becomes.
   string expanded() const {
     std::filesystem::path path = path_;
-    if (path.extension() == ".xacro") return path.replace_extension().string();
+    if (path.extension() == ".xacro") {
+      path.replace_extension();
+      return path.string() + (path.extension() == ".urdf" ? "" : ".urdf");
+    }
     return path.replace_filename(path.stem().string() + "-plain.urdf").string();
   }
 

@@ -41,7 +41,7 @@ bool has_bytes(const std::string& path) {
 
 std::string absolute(const std::string& path) {
   std::error_code error;
-  const std::string whole = std::filesystem::absolute(path, error).string();
+  std::string whole = std::filesystem::absolute(path, error).string();
   if (error) throw Error(ErrorKind::bad_file, path + ": cannot be opened: " + error.message());
   return whole;
 }

@@ -133,8 +133,14 @@ void settle_trust(Outcome& outcome) {
   for (const Warning& warning : outcome.warnings) {
     if (warning.ends_trust) outcome.trustworthy = false;
   }
-  const bool is_told = outcome.json.contains("trustworthy");
-  if (is_told && !outcome.trustworthy) outcome.json["trustworthy"] = false;
+  if (outcome.trustworthy) return;
+  if (outcome.json.contains("trustworthy")) outcome.json["trustworthy"] = false;
+  const auto says = [](const std::string& line) {
+    return line.find("NOT TRUSTWORTHY") != std::string::npos;
+  };
+  if (std::none_of(outcome.lines.begin(), outcome.lines.end(), says)) {
+    outcome.lines.emplace_back("NOT TRUSTWORTHY: the warnings say why");
+  }
 }
 
 /// Options without effect, and in every tool that has --machine what the files of machines are not
