@@ -324,7 +324,7 @@ TEST(Tool, ForeignTextCannotSpeakToATerminal) {
   outcome.lines = {"topic \033]0;owned\007"};
   outcome.warnings = {{WarningCode::frame, "frame \033[2J\xc2\x9b and ä"}};
   const Probe probe = run({"a", "--density", "4"}, outcome);
-  EXPECT_EQ(probe.out, "topic ?]0;owned?\n");
+  EXPECT_EQ(probe.out, "topic ?]0;owned?\nNOT TRUSTWORTHY: the warnings say why\n");
   EXPECT_EQ(probe.err, "working\nprobe: warning (ends trust): frame ?[2J? and ä\n");
   const Probe refused = run({"a", "--density", "4\033[31m"});
   EXPECT_EQ(refused.err.find('\033'), std::string::npos) << refused.err;
