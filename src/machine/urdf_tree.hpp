@@ -48,7 +48,7 @@ struct UrdfTree {
   /// The joints from the root to a link.
   std::vector<const UrdfJoint*> chain_to(const std::string& link) const;
   /// @throws Error (bad_file) "FILE: line LINE: joint 'NAME' WHAT"
-  [[noreturn]] void refuse(const UrdfJoint& joint, const std::string& what) const;
+  [[noreturn]] void refuse(const UrdfJoint& of, const std::string& what) const;
 };
 
 /// Reads links and joints; what else the file has, such as meshes, is skipped. Numbers must be
