@@ -189,7 +189,9 @@ class Plans(unittest.TestCase):
         plan = ex.plan_dig(MACHINE, LOAM, 40, ground.terrain, method="search",
                            search=ex.DigSearchOptions(evaluations=60))
         warnings = [each.code for each in ground.warnings] + [each.code for each in plan.warnings]
-        self.assertEqual(warnings, [each["code"] for each in told["warnings"]])
+        # The tool looks at all that the scan shows at the tracks, plan_dig() at the terrain to dig on.
+        of_tool = [each["code"] for each in told["warnings"]]
+        self.assertEqual(warnings, [code for code in of_tool if code != "ground_at_tracks_unseen"])
         self.assertEqual(plan.dig.payload_mass, told["payload_mass_kg"])
         self.assertEqual(plan.dig.energy / 1000.0, told["energy_kj"])
 
