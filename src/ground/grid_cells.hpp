@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include <excavplan/ground/height_map.hpp>
 
 /// @file
 /// Visiting the cells of a grid. Private to the project.
@@ -19,6 +22,16 @@ struct Cell {
   Eigen::Index row;
   Eigen::Index col;
 };
+
+/// The cell that holds a place; nothing outside the map.
+inline std::optional<Cell> cell_at(const HeightMap& grid, double x, double y) {
+  const double col = std::floor((x - grid.origin.x()) / grid.cell_size);
+  const double row = std::floor((y - grid.origin.y()) / grid.cell_size);
+  const bool inside = col >= 0.0 && col < static_cast<double>(grid.z.cols()) && row >= 0.0 &&
+                      row < static_cast<double>(grid.z.rows());
+  if (!inside) return std::nullopt;
+  return Cell{static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)};
+}
 
 template <typename Array, typename Visit>
 void for_each_cell(const Array& grid, Visit visit) {

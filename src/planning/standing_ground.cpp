@@ -13,6 +13,7 @@
 #include "base/random.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
 #include "ground/plane_fit.hpp"
 
@@ -277,10 +278,8 @@ class Judgement {
   }
 
   double height_of(const Vector2d& at) const {
-    const auto col = static_cast<Index>(std::floor((at.x() - ground_.origin.x()) / cell()));
-    const auto row = static_cast<Index>(std::floor((at.y() - ground_.origin.y()) / cell()));
-    const bool inside = col >= 0 && row >= 0 && col < ground_.z.cols() && row < ground_.z.rows();
-    return inside ? ground_.z(row, col) : 0.0;
+    const auto place = cell_at(ground_, at.x(), at.y());
+    return place ? ground_.z(place->row, place->col) : 0.0;
   }
 
   /// Where a drop may begin, on the way to the tracks: its edge hides at most as much ground behind

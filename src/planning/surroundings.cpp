@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
 
 namespace excavplan {
@@ -34,19 +35,6 @@ HeightMap grid_over(const Machine& machine, const HeightMap& ground) {
   const auto cells = static_cast<Index>(std::ceil(2.0 * reach / grid.cell_size)) + 2;
   grid.z = ArrayXXd::Constant(cells, cells, std::nan(""));
   return grid;
-}
-
-struct Cell {
-  Index row, col;
-};
-
-std::optional<Cell> cell_at(const HeightMap& grid, const Vector2d& place) {
-  const double col = (place.x() - grid.origin.x()) / grid.cell_size;
-  const double row = (place.y() - grid.origin.y()) / grid.cell_size;
-  const bool inside = col >= 0.0 && col < static_cast<double>(grid.z.cols()) && row >= 0.0 &&
-                      row < static_cast<double>(grid.z.rows());
-  if (!inside) return std::nullopt;
-  return Cell{static_cast<Index>(row), static_cast<Index>(col)};
 }
 
 /// A run of cells along an axis.
@@ -152,7 +140,7 @@ void Surroundings::put_undercarriage() {
 }
 
 bool Surroundings::stands_at(double x, double y) const {
-  const auto cell = cell_at(seen_, {x, y});
+  const auto cell = cell_at(seen_, x, y);
   return cell && stands_(cell->row, cell->col) > -infinity;
 }
 
@@ -229,7 +217,7 @@ Clearance Surroundings::least(const FrontJoints& joints, double spacing, double 
   found.height = most;
   double too_high = top_ + most;
   visit(joints, spacing, too_high, [&](const Vector2d& place, double bottom) {
-    const auto cell = cell_at(seen_, place);
+    const auto cell = cell_at(seen_, place.x(), place.y());
     const double ground = cell ? height_of(cell->row, cell->col) : 0.0;
     if (bottom - ground >= found.height) return;
     found = {bottom - ground, {place.x(), place.y(), ground}};
@@ -269,7 +257,7 @@ std::optional<Clearance> Surroundings::obstacle_leaving(const FrontJoints& from,
                                                         const FrontJoints& to) const {
   UnseenGround::Cells stands = UnseenGround::Cells::Constant(seen_.z.rows(), seen_.z.cols(), false);
   visit(from, fine_, infinity, [&](const Vector2d& place, double) {
-    const auto cell = cell_at(seen_, place);
+    const auto cell = cell_at(seen_, place.x(), place.y());
     if (!cell) return;
     const Index row = std::max<Index>(0, cell->row - 1), col = std::max<Index>(0, cell->col - 1);
     stands.block(row, col, std::min<Index>(3, stands.rows() - row),
@@ -306,7 +294,7 @@ void Surroundings::pass(const FrontJoints& from, const FrontJoints& to,
   for (double i = 0.0; i <= count; ++i) {
     const FrontJoints at = from + i / count * (to - from);
     visit(at, fine_, infinity, [&](const Vector2d& place, double) {
-      const auto cell = cell_at(seen_, place);
+      const auto cell = cell_at(seen_, place.x(), place.y());
       if (!cell || !std::isnan(seen_.z(cell->row, cell->col))) return;
       bool& passed = unseen.cells(cell->row, cell->col);
       if (passed) return;

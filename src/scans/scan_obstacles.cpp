@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ground/grid_cells.hpp"
 #include "ground/obstacles.hpp"
 #include "ground/window.hpp"
 #include "scans/scan_reading.hpp"
@@ -50,19 +51,19 @@ class ObstacleCells {
   Rectangle extent() const { return highest_.extent(); }
 
   void add(const Vector3d& p) {
-    const auto at = cell_of(p);
-    if (!at || p.z() <= highest_.z(at->first, at->second)) return;
-    highest_.z(at->first, at->second) = p.z();
-    x_(at->first, at->second) = p.x();
-    y_(at->first, at->second) = p.y();
+    const auto at = cell_at(highest_, p.x(), p.y());
+    if (!at || p.z() <= highest_.z(at->row, at->col)) return;
+    highest_.z(at->row, at->col) = p.z();
+    x_(at->row, at->col) = p.x();
+    y_(at->row, at->col) = p.y();
   }
 
   /// After all were added.
   void begin_below() { top_ = highest_within(highest_.z, 1); }
   void add_below(const Vector3d& p) {
-    const auto at = cell_of(p);
-    if (!at || p.z() > top_(at->first, at->second) - level) return;
-    double& below = below_(at->first, at->second);
+    const auto at = cell_at(highest_, p.x(), p.y());
+    if (!at || p.z() > top_(at->row, at->col) - level) return;
+    double& below = below_(at->row, at->col);
     below = std::max(below, p.z());
   }
 
@@ -92,15 +93,6 @@ class ObstacleCells {
   }
 
  private:
-  std::optional<std::pair<Index, Index>> cell_of(const Vector3d& p) const {
-    const double col = std::floor((p.x() - highest_.origin.x()) / highest_.cell_size);
-    const double row = std::floor((p.y() - highest_.origin.y()) / highest_.cell_size);
-    const bool inside = col >= 0.0 && row >= 0.0 && col < static_cast<double>(highest_.z.cols()) &&
-                        row < static_cast<double>(highest_.z.rows());
-    if (!inside) return std::nullopt;
-    return std::pair(static_cast<Index>(row), static_cast<Index>(col));
-  }
-
   /// Returns of obstacles with nothing below them but the ground, and ground all around: not the
   /// edge of a roof.
   /// @param next  level below the highest of each cell and those beside it

@@ -33,15 +33,10 @@ HeightMap blank(HeightMap map, const Rectangle& there) {
   return map;
 }
 
-Cell cell_at(const HeightMap& map, double x, double y) {
-  return {static_cast<Eigen::Index>((y - map.origin.y()) / map.cell_size),
-          static_cast<Eigen::Index>((x - map.origin.x()) / map.cell_size)};
-}
-
 TEST(SightLines, TheLowestRayOverLevelGroundHitsTheNextCell) {
   const HeightMap map = flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05);
   const SightLines sight(map, {-2.0, 2.0, 3.0});
-  const Cell at = cell_at(map, 1.0, 2.0);
+  const Cell at = *cell_at(map, 1.0, 2.0);
   EXPECT_NEAR(sight.cells_to_rim(at), 1.0, 0.1);
   EXPECT_NEAR(sight.ceiling(at), 0.05 * 3.0 / 3.0, 0.005);
   EXPECT_FALSE(sight.faces_unseen(at));
@@ -56,18 +51,18 @@ TEST(SightLines, BehindARimTheCeilingFallsToWhatIsSeenNext) {
   map = blank(std::move(map), {1.0, 0.0, 1.5, 4.0});
   const SightLines sight(map, {-2.0, 2.0, 3.0});
   for (const double x : {1.1, 1.3}) {
-    const Cell at = cell_at(map, x, 2.0);
+    const Cell at = *cell_at(map, x, 2.0);
     EXPECT_NEAR(sight.ceiling(at), 3.0 - (map.x(at.col) + 2.0), 0.04) << x;
   }
-  EXPECT_TRUE(sight.hides(cell_at(map, 0.98, 2.0)));
-  EXPECT_FALSE(sight.hides(cell_at(map, 0.9, 2.0)));
+  EXPECT_TRUE(sight.hides(*cell_at(map, 0.98, 2.0)));
+  EXPECT_FALSE(sight.hides(*cell_at(map, 0.9, 2.0)));
 }
 
 TEST(SightLines, AGapInTheScanIsNoShadow) {
   const HeightMap map = blank(flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05), {1.0, 1.5, 1.5, 2.5});
   const SightLines sight(map, {-2.0, 2.0, 3.0});
-  EXPECT_TRUE(sight.faces_unseen(cell_at(map, 0.98, 2.0)));
-  EXPECT_FALSE(sight.hides(cell_at(map, 0.98, 2.0)));
+  EXPECT_TRUE(sight.faces_unseen(*cell_at(map, 0.98, 2.0)));
+  EXPECT_FALSE(sight.hides(*cell_at(map, 0.98, 2.0)));
 }
 
 TEST(SightLines, ReturnsMixedAtARimAreDropped) {
@@ -84,7 +79,7 @@ TEST(SightLines, ReturnsMixedAtARimAreDropped) {
     surface.points(at.row, at.col) = static_cast<int>(600.0 * ray.z() / std::pow(ray.norm(), 3));
   });
   map = blank(std::move(map), {1.0, 0.0, 1.5, 4.0});
-  const Cell mixed = cell_at(map, 1.22, 2.0);
+  const Cell mixed = *cell_at(map, 1.22, 2.0);
   map.z(mixed.row, mixed.col) = 3.0 - (map.x(mixed.col) + 2.0);
   surface.points(mixed.row, mixed.col) = 2;
   const Eigen::ArrayXXi dropped = drop_mixed_returns(surface);
@@ -208,7 +203,7 @@ TEST(AllSightLines, BoundUnseenGroundByWhatEachPlaceSawItself) {
   surface.seen_from.setConstant(map.z.rows(), map.z.cols(), 3);
   const SightLines left(map, surface.sensors[0]);
   const SightLines right(map, surface.sensors[1]);
-  const Cell at = cell_at(map, 1.4, 2.0);
+  const Cell at = *cell_at(map, 1.4, 2.0);
   EXPECT_EQ(AllSightLines(map, surface).ceiling(at), std::min(left.ceiling(at), right.ceiling(at)));
   EXPECT_LT(left.ceiling(at), right.ceiling(at));
   for_each_cell(map.z, [&](Cell cell) {
