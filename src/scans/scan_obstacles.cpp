@@ -107,7 +107,7 @@ class ObstacleCells {
     for (Index col = 0; col < z.cols(); ++col) {
       for (Index row = 0; row < z.rows(); ++row) {
         if (!hangs(row, col) || beside_body(row, col) > 0.0) continue;
-        if (!ground_around(row, col, ground(row, col) + low)) continue;
+        if (!ground_around({row, col}, ground(row, col) + low)) continue;
         points.emplace_back(x_(row, col), y_(row, col), z(row, col));
       }
     }
@@ -140,12 +140,12 @@ class ObstacleCells {
   }
 
   /// Whether ground was seen within 0.5 m in at least seven of eight directions.
-  bool ground_around(Index row, Index col, double highest) const {
+  bool ground_around(const Cell& cell, double highest) const {
     const Index near = cells(0.5);
     unsigned seen = 0;
     for (Index down = -near; down <= near; ++down) {
       for (Index right = -near; right <= near; ++right) {
-        const Index r = row + down, c = col + right;
+        const Index r = cell.row + down, c = cell.col + right;
         if (r < 0 || c < 0 || r >= highest_.z.rows() || c >= highest_.z.cols()) continue;
         const double z = highest_.z(r, c);
         if (z == nothing || z > highest) continue;
