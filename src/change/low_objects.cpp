@@ -157,7 +157,7 @@ class TopFinder {
     for (const Cell at : cells) {
       for (const auto& d : directions) {
         const Cell beside = {at.row + d[0], at.col + d[1]};
-        const Cell beyond = {at.row + 2 * d[0], at.col + 2 * d[1]};
+        const Cell beyond = {beside.row + d[0], beside.col + d[1]};
         if (std::isnan(height(after_, beyond)) || label_(beside.row, beside.col) == mark) continue;
         const double fall = height(after_, at) - height(after_, beyond);
         ++edge.count;

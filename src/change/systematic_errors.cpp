@@ -94,6 +94,7 @@ std::optional<double> find_stripes(const std::vector<StableCell>& cells,
     return strips.explained();
   };
   std::vector<double> values;
+  values.reserve(directions);
   for (int i = 0; i < directions; ++i) values.push_back(explained(pi * i / directions));
   const auto best = std::max_element(values.begin(), values.end());
   double angle = pi * static_cast<double>(best - values.begin()) / directions;

@@ -6,12 +6,12 @@
 
 namespace excavplan {
 
-DigResult rehearse(const Machine& filed, const DigPlan& plan, const PlanSite& site) {
-  const Machine machine = with_attitude(filed, plan.attitude);
-  const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
+DigResult rehearse(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
+  const Machine standing = with_attitude(machine, plan.attitude);
+  const auto simulator = make_simulator(site.simulator, standing, site.soil, site.density_percent);
   DigOptions options;
   options.history = true;
-  return checked_dig(*simulator, machine, site.ground, plan.path, options);
+  return checked_dig(*simulator, standing, site.ground, plan.path, options);
 }
 
 }  // namespace excavplan

@@ -66,7 +66,7 @@ TransformTree RecentTransforms::tree() const {
     all.insert(all.end(), frame.begin(), frame.end());
   }
   for (const auto& [link, transform] : fixed_) all.push_back(transform);
-  return TransformTree("transforms", moving_.empty() ? 0 : first, std::move(all));
+  return {"transforms", moving_.empty() ? 0 : first, std::move(all)};
 }
 
 }  // namespace excavplan

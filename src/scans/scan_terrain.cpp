@@ -30,7 +30,7 @@ constexpr std::size_t fewest_points = 10;  // that make a ground; ours
 constexpr double motion_cell = 0.25, motion_farthest = 0.5;
 constexpr double above_reach = 0.5;  // what is higher is in nobody's way
 
-constexpr double ceiling = 20.0;  // of what may stand in the way of a dig; ours [m]
+constexpr double dig_ceiling = 20.0;  // of what may stand in the way of a dig; ours [m]
 
 constexpr double interpolated = 1.0, shaped = 3.5;  // around an extent; ours [m]
 
@@ -137,8 +137,8 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   const double cell = std::max(cell_size, cell_of(seen));
   const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
   const HeightMap ground = ground_of(seen, cell, widest_gap, extent, cell_size);
-  const SeenTops tops =
-      seen_tops(cropped(scan, extent, shaped), ground, {cell_of(seen), ceiling, behind(extent)});
+  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
+                                  {cell_of(seen), dig_ceiling, behind(extent)});
   ScannedTerrain result{terrain_with(ground, tops.obstacles), scan.doubts};
   if (const double unseen = unseen_area(ground); unseen > 0.0) {
     result.warnings.emplace_back(WarningCode::unseen_ground,
