@@ -221,18 +221,22 @@ std::uint64_t require_head(const InputFile& file, const std::string& head) {
   return head.size();
 }
 
-void read_rows(const InputFile& file, std::uint64_t at, GroundState& state) {
+/// @return their seal
+std::string read_rows(const InputFile& file, std::uint64_t at, GroundState& state) {
+  Seal seal(state);
   const auto width = static_cast<std::size_t>(state.terrain.bank.z.cols());
   std::string bytes(8 * width, '\0');
   for_each_row(state, [&](const StateLayer& layer, Eigen::Index row) {
     file.read(at, bytes.data(), bytes.size());
     at += bytes.size();
+    seal.add(bytes);
     for (std::size_t col = 0; col < width; ++col) {
       layer.of(state)(row, static_cast<Eigen::Index>(col)) =
           load<double>(bytes.data() + 8 * col, false);
     }
   });
   file.require_end();
+  return seal.text();
 }
 
 std::string seal_of(const GroundState& state) {
@@ -278,8 +282,7 @@ GroundState load_ground(const std::string& path) {
   const std::uint64_t begin = require_head(file, head_of(state, seal));
   const auto cells = static_cast<std::uint64_t>(state.terrain.bank.z.size());
   require_bytes(file, begin + 8 * summary.bands.size() * cells);
-  read_rows(file, begin, state);
-  if (seal_of(state) != seal) {
+  if (read_rows(file, begin, state) != seal) {
     file.refuse("its numbers do not have the checksum " + in_quotes(seal) +
                 " of its metadata: the file was changed");
   }
