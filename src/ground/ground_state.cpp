@@ -257,6 +257,22 @@ void require_ground_state(const GroundState& state, const char* what) {
   if (const auto fault = fault_of_names(state)) refuse(std::string(what) + ": " + *fault);
 }
 
+GroundState after_dig(GroundState state, const Terrain& after) {
+  require_terrain(state.terrain, "ground before a dig");
+  require_terrain(after, "ground after a dig");
+  require(same_grid(state.terrain.bank, after.bank), "a dig leaves the grid of its ground");
+  if (state.deviation.size() > 0) {
+    constexpr double rounding = 1e-9;  // [m]
+    const Eigen::ArrayXXd change = after.surface().z - state.terrain.surface().z;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    state.deviation = (change.abs() > rounding).select(unknown, state.deviation).eval();
+  }
+  Eigen::ArrayXXd told = std::move(state.terrain.bank_void_ratio);
+  state.terrain = after;
+  state.terrain.bank_void_ratio = std::move(told);
+  return state;
+}
+
 void save_ground(const std::string& file, const GroundState& state) {
   require_ground_state(state, "state of the ground");
   const std::string head = head_of(state, seal_of(state));

@@ -155,5 +155,21 @@ TEST_F(GroundFile, KeepsTheOldOneIfAStateIsNone) {
   expect_same(load_ground(file), full_state());
 }
 
+TEST(GroundState, AfterADigKeepsWhatIsTold) {
+  const GroundState before = full_state();
+  Terrain after = before.terrain;
+  after.bank.z(0, 0) -= 0.1;
+  after.bank_void_ratio.setZero();
+  const GroundState state = after_dig(before, after);
+  EXPECT_TRUE(std::isnan(state.deviation(0, 0)));
+  EXPECT_EQ(state.deviation(1, 1), before.deviation(1, 1));
+  expect_same(state.terrain.bank.z, after.bank.z);
+  expect_same(state.terrain.bank_void_ratio, before.terrain.bank_void_ratio);
+  expect_same(state.seen, before.seen);
+  after.bank.origin.x() += 1.0;
+  EXPECT_EQ(test::error_of([&] { after_dig(before, after); }),
+            "a dig leaves the grid of its ground");
+}
+
 }  // namespace
 }  // namespace excavplan

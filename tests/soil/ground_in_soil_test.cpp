@@ -41,14 +41,25 @@ TEST(GroundInSoil, DensitiesAreVoidRatios) {
 
 TEST(GroundInSoil, WhatIsNotKnownIsFilled) {
   const SoilKind soil = loam();
-  const GroundState state = with_void_ratios(ground_in_soil(plain_ground(), soil), soil, 60.0);
-  EXPECT_EQ(state.terrain.bank_void_ratio(3), bank_state(soil, 60.0).void_ratio);
-  EXPECT_EQ(state.terrain.bank_void_ratio(0), soil.void_ratio_max);
-  EXPECT_EQ(state.terrain.loose_void_ratio(3), soil.void_ratio_loose);
+  const Terrain terrain = terrain_to_dig(ground_in_soil(plain_ground(), soil), soil, 60.0);
+  EXPECT_EQ(terrain.bank_void_ratio(3), bank_state(soil, 60.0).void_ratio);
+  EXPECT_EQ(terrain.bank_void_ratio(0), soil.void_ratio_max);
+  EXPECT_EQ(terrain.loose_void_ratio(3), soil.void_ratio_loose);
   PlainGround bare = plain_ground();
   bare.bank_density_percent.resize(0, 0);
-  const GroundState even = with_void_ratios(ground_in_soil(bare, soil), soil, 60.0);
-  EXPECT_TRUE((even.terrain.bank_void_ratio == bank_state(soil, 60.0).void_ratio).all());
+  bare.loose_density_percent.resize(0, 0);
+  const Terrain even = terrain_to_dig(ground_in_soil(bare, soil), soil, 60.0);
+  EXPECT_EQ(even.bank_void_ratio.size(), 0);
+  EXPECT_TRUE((even.loose_void_ratio == soil.void_ratio_loose).all());
+}
+
+TEST(GroundInSoil, TheDensityOfAPlaceIsThatOfItsCells) {
+  const SoilKind soil = loam();
+  const Terrain terrain = ground_in_soil(plain_ground(), soil).terrain;
+  EXPECT_NEAR(*bank_density_percent(terrain, soil, {0.0, 0.0, 0.2, 1.0}), 20.0, 1e-9);
+  EXPECT_NEAR(*bank_density_percent(terrain, soil, {0.2, 0.0, 0.4, 1.0}), 100.0, 1e-9);
+  EXPECT_FALSE(bank_density_percent(terrain, soil, {0.3, 0.0, 0.4, 1.0}));
+  EXPECT_FALSE(bank_density_percent(undisturbed(terrain.bank), soil, {0.0, 0.0, 1.0, 1.0}));
 }
 
 TEST(GroundInSoil, AFileIsOfItsSoil) {
