@@ -179,9 +179,7 @@ SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uin
     }
     return points;
   };
-  const bool blocks = scene.blocks.has_value();
-  return {scan(blocks ? scene.blocks->before : scene.before.surface(), 0),
-          scan(blocks ? scene.blocks->after : scene.after.surface(), 1)};
+  return {scan(scene.ground_before(), 0), scan(scene.ground_after(), 1)};
 }
 
 }  // namespace excavplan

@@ -13,11 +13,15 @@
 
 namespace excavplan::tools {
 
+/// The set-up of cameras over dig and heap, or at their own places.
+inline constexpr const char* from_above = "above";
+
 /// The scans of a simulated scene that are written to files.
 struct SceneScanInputs {
   std::optional<std::string> before, after;
   DepthCamera camera;
   std::vector<CameraPlace> places;  ///< empty: over dig and heap
+  std::string setup = from_above;   ///< or one of sensor_setups()
 
   bool any() const { return before || after; }
 };

@@ -54,6 +54,10 @@ struct DigScene {
   HeightMapVolumes volumes;          ///< of the two grounds, or of those with blocks
   double bulking_factor_true = 0.0;  ///< by the balance of dry mass [-]
   double duration = 0.0;             ///< of penetrate, drag and scoop [s]
+  /// What a sensor sees before: with the blocks, where there are some.
+  HeightMap ground_before() const { return blocks ? blocks->before : before.surface(); }
+  HeightMap ground_after() const { return blocks ? blocks->after : after.surface(); }  ///< likewise
+
   /// dump_out_of_reach: the machine cannot dump there; no_blocks: the ground is not hard enough
   std::vector<Warning> warnings;
 };

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/sensing/sensor_setup.hpp>
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include <excavplan/base/error.hpp>
+
+#include "base/random.hpp"
+
+namespace excavplan {
+namespace {
+
+/// A D435i below the end of the boom of a machine of 12 t, which is lowered over what is scanned:
+/// from farther than 3 m its heights err by centimetres. Place, range and frames are ours.
+SensorSetup boom_camera() {
+  DepthCamera camera;
+  camera.position = {4.5, -0.3, 2.9};
+  camera.target = {4.7, 0.0, 0.0};
+  camera.max_range = 5.0;
+  camera.frames = 5;
+  return {"boom-camera", with_errors_of(sensor_of_word("d435i"), camera)};
+}
+
+/// A scanning lidar on the roof of the cab, left of the boom. Place and window are ours.
+SensorSetup cab_lidar() {
+  Lidar lidar;
+  lidar.position = {0.4, 0.7, 3.6};
+  lidar.azimuth = {-1.0, 1.0};
+  lidar.elevation = {-1.2, -0.15};
+  return {"cab-lidar", lidar};
+}
+
+std::vector<Eigen::Vector3d> scan_swung(const HeightMap& surface, DepthCamera camera, double swing,
+                                        std::uint64_t seed) {
+  const Eigen::AngleAxisd turn(swing, Eigen::Vector3d::UnitZ());
+  camera.position = turn * camera.position;
+  camera.target = turn * camera.target;
+  return scan_surface(surface, camera, seed);
+}
+
+std::vector<Eigen::Vector3d> scan_swung(const HeightMap& surface, Lidar lidar, double swing,
+                                        std::uint64_t seed) {
+  lidar.position = Eigen::AngleAxisd(swing, Eigen::Vector3d::UnitZ()) * lidar.position;
+  lidar.azimuth.array() += swing;
+  return scan_surface(surface, lidar, seed);
+}
+
+}  // namespace
+
+const std::vector<SensorSetup>& sensor_setups() {
+  static const std::vector<SensorSetup> list = {boom_camera(), cab_lidar()};
+  return list;
+}
+
+const SensorSetup& sensor_setup_of_word(const std::string& word) {
+  std::string words;
+  for (const SensorSetup& setup : sensor_setups()) {
+    if (setup.name == word) return setup;
+    words += (words.empty() ? "" : " or ") + setup.name;
+  }
+  throw Error(ErrorKind::bad_input, "set-up is '" + word + "', must be " + words);
+}
+
+std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const SensorSetup& setup,
+                                          const std::vector<double>& swings, std::uint64_t seed) {
+  std::vector<Eigen::Vector3d> points;
+  std::uint64_t index = 0;
+  for (const double swing : swings) {
+    const std::uint64_t of_look = Random(seed, index++).bits();
+    const std::vector<Eigen::Vector3d> seen =
+        std::visit([&](const auto& sensor) { return scan_swung(surface, sensor, swing, of_look); },
+                   setup.sensor);
+    points.insert(points.end(), seen.begin(), seen.end());
+  }
+  return points;
+}
+
+SceneScans scan_scene(const DigScene& scene, const SensorSetup& setup, std::uint64_t seed) {
+  const std::vector<double> swings = {0.0, std::atan2(scene.dump_at.y(), scene.dump_at.x())};
+  const auto scan = [&](const HeightMap& surface, std::uint64_t epoch) {
+    auto points = scan_surface(surface, setup, swings, Random(seed, epoch).bits());
+    if (!points.empty()) return points;
+    throw Error(ErrorKind::bad_input, "the set-up " + setup.name + " sees no ground of the scene");
+  };
+  return {scan(scene.ground_before(), 0), scan(scene.ground_after(), 1)};
+}
+
+}  // namespace excavplan
