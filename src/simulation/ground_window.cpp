@@ -117,6 +117,11 @@ SoilState GroundWindow::bank_state(Index row, Index col) const {
   return bank_is_even() ? soil_.bank : checked_bank_state(soil_.kind, bank_void_ratio(row, col));
 }
 
+SoilState GroundWindow::lying_state(Index row, Index col) const {
+  return loose_is_even() ? soil_.loose
+                         : checked_loose_state(soil_.kind, whole_.loose_void_ratio(row, col));
+}
+
 void GroundWindow::mix(std::size_t cell, double thickness) {
   const double solids =
       loose_[cell] / (1.0 + void_ratio_[cell]) + thickness / (1.0 + soil_.loose.void_ratio);

@@ -66,6 +66,10 @@ class GroundWindow {
   bool bank_is_even() const { return whole_.bank_void_ratio.size() == 0; }
   /// State of a cell's bank.
   SoilState bank_state(Eigen::Index row, Eigen::Index col) const;
+  /// Whether all loose soil is in the state of soil just dug.
+  bool loose_is_even() const { return whole_.loose_void_ratio.size() == 0; }
+  /// State of the loose soil that lay on a cell before.
+  SoilState lying_state(Eigen::Index row, Eigen::Index col) const;
 
   /// Loose thickness of a thickness of the bank, or of the loose layer, once it has moved [m].
   double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const;

@@ -335,7 +335,7 @@ SectionModel::SectionModel(Machine machine_, SoilKind kind_, double density_perc
       density_percent(density_percent_),
       bank(bank_state(kind, density_percent)),
       loose(loose_state(kind)),
-      wedges(kind, bank),
+      wedges(kind, bank, loose),
       packed(machine.bucket) {
   // Dug soil has the cohesion of moist soil in that state.
   const SoilState dug =
