@@ -268,6 +268,7 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
 void BucketResistance::push_strips(const SlidingFace& face, const Place& place, const Layers& mean,
                                    double rise, FaceForce& force) const {
   const bool even = ground_.bank_is_even() && ground_.loose_is_even();
+  const FaceTerms dug = even ? mean.loose : terms_of(model_.loose, face, place.slope);
   std::optional<Layers> own;
   for (Index i = 0; i < swath_.rows(); ++i) {
     const Index row = swath_.first_row() + i;
@@ -282,8 +283,11 @@ void BucketResistance::push_strips(const SlidingFace& face, const Place& place, 
     const double pile = pile_on_wedge(row, place, strip, layers);
     force.push(width * passive_of_bank(strip, pile, layers),
                width * layers.bank.adhesion * strip.bank, layers.bank);
-    force.push(width * passive_of_loose(strip, pile, layers.loose),
-               width * layers.loose.adhesion * strip.loose, layers.loose);
+    if (strip.loose > 0.0) {
+      force.push(width * passive_of_loose(strip, pile, layers.loose),
+                 width * layers.loose.adhesion * strip.loose, layers.loose);
+    }
+    force.push(width * dug.soil.unit_weight * pile * pile * dug.n.gamma, 0.0, dug);
     if (force.fade < 1.0) {
       force.along += width * (1.0 - force.fade) * shearing_force(strip, rise, layers);
     }
@@ -306,13 +310,12 @@ double BucketResistance::passive_of_bank(const Strip& strip, double pile,
                        surcharge * t.n.q + t.adhesion * t.n.ca);
 }
 
-/// Likewise of its part in the loose layer, and of the pile, whose own face is in loose soil.
+/// Likewise of its part in the loose layer.
 double BucketResistance::passive_of_loose(const Strip& strip, double pile,
                                           const FaceTerms& t) const {
   const double surcharge = model_.loose.unit_weight * pile;
   return strip.loose * (t.soil.unit_weight * strip.loose * t.n.gamma + t.soil.cohesion * t.n.c +
-                        surcharge * t.n.q + t.adhesion * t.n.ca) +
-         surcharge * pile * t.n.gamma;
+                        surcharge * t.n.q + t.adhesion * t.n.ca);
 }
 
 /// Weight of the wedge's part over the face, per metre of width [N/m].
@@ -404,7 +407,8 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     const double level = std::min(swept_to(point.x(), behind), surface_between(point.x()));
     const double sunk = level - point.y();
     if (!(sunk > least_sunk)) continue;
-    const CutSoil ground = soil_above(swath_.column(point.x()), point.y());
+    const Index col = swath_.column(point.x());
+    const CutSoil ground = soil_above(col, point.y());
     const SoilState& soil = ground.bank_depth > 0.0 ? ground.bank : ground.loose;
     const double pressure =
         std::min(1.0, sunk / footing) * bearing_capacity(soil, ground.overburden(), floor_length());
@@ -413,6 +417,9 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     const double force = pressure * area;
     r.heel_force += force * (inward - std::tan(soil.tool_friction_angle) * motion);
     r.heel_point += force * point;
+    if (!(ground.bank_depth > 0.0) && !ground_.loose_is_even()) {
+      r.pressed.push_back({col, pressure});
+    }
     pressed += force;
   }
   if (pressed > 0.0) r.heel_point /= pressed;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include <excavplan/machine/dig_path.hpp>
@@ -10,10 +12,10 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/bucket_cavity.hpp"
-#include "simulation/cut_soil.hpp"
 #include "simulation/ground_window.hpp"
 #include "simulation/soil_wedges.hpp"
 #include "simulation/swath.hpp"
+#include "soil/cut_soil.hpp"
 
 namespace excavplan {
 
@@ -54,6 +56,13 @@ struct Resistance {
   double borne_weight = 0.0;  ///< of the soil that the wedge carries; the bucket carries the rest
   double wedge_length = 0.0;  ///< of the top of the wedge that is pushed, ahead of the lip [m]
   double edge = 0.0;          ///< part of lip_force that is of lip and teeth, against the motion
+
+  /// Where the heel stands on loose soil that can be compacted.
+  struct Pressed {
+    Eigen::Index col;
+    double pressure;  ///< [Pa]
+  };
+  std::vector<Pressed> pressed;
 
   Eigen::Vector2d total() const { return face_force + lip_force + heel_force; }
 };

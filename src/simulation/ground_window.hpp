@@ -26,8 +26,8 @@ struct GroundSoil {
 /// The part of a terrain on which a dig works: a copy of the cells near it that grows on demand, so
 /// that the size of the terrain does not matter. Rows and columns are those of the whole terrain.
 ///
-/// Soil that is dug or slides swells to the loose state; only loose soil that never moved is
-/// denser.
+/// Soil that is dug or slides swells to the loose state; only loose soil that never moved, or was
+/// pressed since, is denser.
 class GroundWindow {
  public:
   /// @throws Error (bad_input) as cover()
@@ -85,6 +85,9 @@ class GroundWindow {
     loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
     changed(cell);
   }
+  /// Presses on the loose layer of a cell [Pa]; it keeps its solids. Without void ratios a terrain
+  /// does not remember it.
+  void compact(std::size_t cell, double pressure);
   /// Adds soil that has moved.
   void raise_loose(std::size_t cell, double thickness) {
     if (!void_ratio_.empty()) mix(cell, thickness);

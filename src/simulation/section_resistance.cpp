@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/earthmoving.hpp"
+#include "soil/earthmoving.hpp"
 
 #include "base/angles.hpp"
 

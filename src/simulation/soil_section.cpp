@@ -425,6 +425,11 @@ double SoilSection::surface_before(double x) const {
   return between(x, [](const Column& column) { return column.top_before(); });
 }
 
+SoilState SoilSection::bank_of(double void_ratio) const {
+  const GroundSoil& soil = ground_.soil();
+  return ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, void_ratio);
+}
+
 SoilState SoilSection::loose_of(double void_ratio) const {
   const GroundSoil& soil = ground_.soil();
   return ground_.loose_is_even() ? soil.loose : checked_loose_state(soil.kind, void_ratio);

@@ -49,9 +49,9 @@ struct CutArea {
 struct GroundAhead {
   double bank = 0.0;  ///< at the point [m]
   double surface = 0.0;
-  double gradient = 0.0;          ///< dz / dx: positive downhill along the travel
-  double void_ratio = 0.0;        ///< of the bank
-  double loose_void_ratio = 0.0;  ///< of the loose soil on it
+  double gradient = 0.0;    ///< dz / dx: positive downhill along the travel
+  double void_ratio = 0.0;  ///< of the bank
+  double loose_void_ratio = 0.0;
 };
 
 /// Where a tip works.
@@ -80,15 +80,9 @@ class SoilSection {
   double middle(Eigen::Index col) const { return left(col) + 0.5 * cell_size_; }
   Eigen::Index column_at(double x) const;  ///< the nearest column outside the section
 
-  /// State of the bank where its void ratio is this.
-  SoilState bank_of(double void_ratio) const {
-    const GroundSoil& soil = ground_.soil();
-    return ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, void_ratio);
-  }
-
-  /// State of the loose soil where its void ratio is this.
+  /// States of bank and loose soil where their void ratio is this.
+  SoilState bank_of(double void_ratio) const;
   SoilState loose_of(double void_ratio) const;
-
   /// The tip has come here.
   void pass(const Eigen::Vector2d& tip);
 
@@ -99,7 +93,6 @@ class SoilSection {
   /// Levels of bank and surface before the dig, between the middles of columns.
   double bank_before(double x) const;
   double surface_before(double x) const;
-
   /// The ground under the bucket from the tip backwards, last point first.
   const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <excavplan/soil/soil.hpp>
-#include "simulation/earthmoving.hpp"
+#include "soil/earthmoving.hpp"
 
 namespace excavplan {
 

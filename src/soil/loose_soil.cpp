@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/check.hpp"
+#include "soil/loose_soil.hpp"
 #include "soil/soil.hpp"
 
 namespace excavplan {
@@ -25,15 +26,6 @@ void require_loose(const SoilKind& soil, double void_ratio) {
 }
 
 }  // namespace
-
-SoilState checked_loose_state(const SoilKind& soil, double void_ratio) {
-  const double e = std::clamp(void_ratio, soil.void_ratio_min, soil.void_ratio_loose);
-  const double compacted =
-      (soil.void_ratio_loose - e) / (soil.void_ratio_loose - soil.void_ratio_min);
-  return soil_state(soil, e,
-                    {soil.cohesion_loosest * std::expm1(soil.cohesion_growth * compacted),
-                     soil.friction_loosest + soil.friction_gain * compacted});
-}
 
 double checked_compaction(const SoilKind& soil, double void_ratio, double pressure) {
   const double index =

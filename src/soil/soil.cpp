@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include <excavplan/base/error.hpp>
-#include <excavplan/soil/loose_soil.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
@@ -113,11 +112,31 @@ double void_ratio(const SoilKind& soil, double density_percent) {
   return soil.void_ratio_max - d * (soil.void_ratio_max - soil.void_ratio_min);
 }
 
+/// The phase relations: everything that follows from the void ratio alone.
+SoilState state_of_void_ratio(const SoilKind& soil, double e) {
+  SoilState state;
+  state.relative_density = (soil.void_ratio_max - e) / (soil.void_ratio_max - soil.void_ratio_min);
+  state.void_ratio = e;
+  state.dry_density = soil.specific_gravity * water_density / (1.0 + e);
+  state.bulk_density = state.dry_density * (1.0 + soil.water_content);
+  state.unit_weight = state.bulk_density * gravity;
+  state.saturation = soil.water_content * soil.specific_gravity / e;
+  return state;
+}
+
+void set_strength(const SoilKind& soil, double cohesion, double friction, SoilState& state) {
+  state.cohesion = cohesion;
+  state.adhesion = soil.adhesion_ratio * cohesion;
+  state.friction_angle = friction;
+  state.tool_friction_angle = soil.tool_friction_ratio * friction;
+}
+
 SoilState state_of_density(const SoilKind& soil, double density_percent) {
+  SoilState state = state_of_void_ratio(soil, void_ratio(soil, density_percent));
   const double d = density_percent / 100.0;
-  return soil_state(soil, void_ratio(soil, density_percent),
-                    {soil.cohesion_loosest * std::exp(soil.cohesion_growth * d),
-                     soil.friction_loosest + soil.friction_gain * d});
+  set_strength(soil, soil.cohesion_loosest * std::exp(soil.cohesion_growth * d),
+               soil.friction_loosest + soil.friction_gain * d, state);
+  return state;
 }
 
 }  // namespace
@@ -162,25 +181,20 @@ std::string fingerprint(const SoilKind& soil) {
   return checksum_text(numbers);
 }
 
-SoilState soil_state(const SoilKind& soil, double e, const OwnStrength& strength) {
-  SoilState state;
-  state.relative_density = (soil.void_ratio_max - e) / (soil.void_ratio_max - soil.void_ratio_min);
-  state.void_ratio = e;
-  state.dry_density = soil.specific_gravity * water_density / (1.0 + e);
-  state.bulk_density = state.dry_density * (1.0 + soil.water_content);
-  state.unit_weight = state.bulk_density * gravity;
-  state.saturation = soil.water_content * soil.specific_gravity / e;
-  state.cohesion = strength.cohesion;
-  state.adhesion = soil.adhesion_ratio * strength.cohesion;
-  state.friction_angle = strength.friction_angle;
-  state.tool_friction_angle = soil.tool_friction_ratio * strength.friction_angle;
-  return state;
-}
-
 SoilState checked_bank_state(const SoilKind& soil, double void_ratio) {
   const double span = soil.void_ratio_max - soil.void_ratio_min;
   return state_of_density(soil,
                           100.0 * std::clamp((soil.void_ratio_max - void_ratio) / span, 0.0, 1.0));
+}
+
+SoilState checked_loose_state(const SoilKind& soil, double void_ratio) {
+  const double e = std::clamp(void_ratio, soil.void_ratio_min, soil.void_ratio_loose);
+  const double compacted =
+      (soil.void_ratio_loose - e) / (soil.void_ratio_loose - soil.void_ratio_min);
+  SoilState state = state_of_void_ratio(soil, e);
+  set_strength(soil, soil.cohesion_loosest * std::expm1(soil.cohesion_growth * compacted),
+               soil.friction_loosest + soil.friction_gain * compacted, state);
+  return state;
 }
 
 SoilState bank_state(const SoilKind& soil, double density_percent) {
@@ -199,7 +213,8 @@ SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio) {
 }
 
 SoilState loose_state(const SoilKind& soil) {
-  return loose_state_of_void_ratio(soil, soil.void_ratio_loose);
+  require_soil(soil);
+  return checked_loose_state(soil, soil.void_ratio_loose);
 }
 
 double cone_index(const SoilKind& soil, const SoilState& state, double depth) {

@@ -19,18 +19,7 @@ constexpr double most_cone_index = 1e9;   ///< likewise
 
 /// bank_state_of_void_ratio() of a soil and a void ratio that were checked before.
 SoilState checked_bank_state(const SoilKind& soil, double void_ratio);
-/// loose_state_of_void_ratio() likewise; what is out of the range is at its end.
+/// loose_state_of_void_ratio() likewise; out of the range it is that at its end.
 SoilState checked_loose_state(const SoilKind& soil, double void_ratio);
-/// compacted_void_ratio() likewise.
-double checked_compaction(const SoilKind& soil, double void_ratio, double pressure);
-
-/// Of the grains against each other.
-struct OwnStrength {
-  double cohesion = 0.0;        ///< [Pa]
-  double friction_angle = 0.0;  ///< [rad]
-};
-
-/// The state with this void ratio, by the phase relations, and this strength.
-SoilState soil_state(const SoilKind& soil, double void_ratio, const OwnStrength& strength);
 
 }  // namespace excavplan

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/cut_soil.hpp"
+#include "soil/cut_soil.hpp"
 
 #include <cmath>
 
