@@ -41,6 +41,6 @@ void save_ground(const std::string& file, const GroundState& state);
 /// Reads a file that save_ground() wrote. load_ground() with a soil (soil/ground_in_soil.hpp) also
 /// reads the grids of other programs.
 /// @throws Error (bad_file) naming file, place and rule if it is no such file, cut off or damaged
-GroundState load_ground(const std::string& file);
+GroundState load_ground(const std::string& path);
 
 }  // namespace excavplan

@@ -21,6 +21,6 @@ struct PlainGround {
 /// Reads a JSON that names ESRI ASCII grids (docs/formats.md#ground), which must lie in its own
 /// folder and be of equal grid.
 /// @throws Error (bad_file) naming file, key, value and rule
-PlainGround load_plain_ground(const std::string& file);
+PlainGround load_plain_ground(const std::string& path);
 
 }  // namespace excavplan
