@@ -101,8 +101,8 @@ StrewnSoil expected_soil(const OutsideSum& sum, double rose, double layers) {
   return {value, likely * within, std::max(0.0, likely * mean * mean - value * value)};
 }
 
-/// What (hole, spill, heap) lack for each unit of soil that lies on ground taken for stable, because
-/// it raises the datum.
+/// What (hole, spill, heap) lack for each unit of soil that lies on ground taken for stable,
+/// because it raises the datum.
 Eigen::Vector3d lost_by_datum(const Area& area) {
   Eigen::Vector3d lost = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
