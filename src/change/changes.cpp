@@ -366,13 +366,15 @@ class ChangeReader {
         if (change.what != meaning.what || (change.volume > 0.0) != (volume > 0.0)) continue;
         change.zones.push_back(p);
         change.volume += volume;
+        change.loose += zone(p).loose;
         return;
       }
     } else if (meaning.prior < certain && !is(p, hole_)) {
       meaning.what += " around (" + hundredths(zone(p).centre.x()) + ", " +
                       hundredths(zone(p).centre.y()) + ") m";
     }
-    changes_.push_back({meaning.kind, meaning.what, {p}, volume, meaning.prior, meaning.prior});
+    changes_.push_back({meaning.kind, meaning.what, {p}, volume, zone(p).loose, meaning.prior,
+                        meaning.prior});
   }
 
   const std::vector<Area>& areas_;

@@ -31,6 +31,8 @@ struct ZoneSum {
   double thin = 0.0;     // and by soil that is too thin to tell from noise [m^6]
   double unknown = 0.0;  // area that was filled [m^2]
   double shadow = 0.0;   // and of that in shadows under known sight lines [m^2]
+  double loose = 0.0;    // loose soil that it took from ground that is known [m^3]
+  double before = 0.0;   // of its variance by noise, what the surface before made [m^6]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Rectangle extent;
   bool is_cut = false;
