@@ -3,14 +3,18 @@
 #include "ground/geotiff.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/check.hpp"
 #include "base/little_endian.hpp"
+#include "base/scalar.hpp"
 
 namespace excavplan {
 namespace {
@@ -62,22 +66,10 @@ std::string escaped(const std::string& meaning) {
   return xml;
 }
 
-/// Names, units and meanings of the bands, as GDAL writes them.
-std::string metadata_of(const std::vector<MapLayer>& layers) {
-  std::string xml = "<GDALMetadata>\n";
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    const std::string& name = layers[i].name;
-    const auto item = [&](const std::string& key, const std::string& role,
-                          const std::string& value) {
-      xml += "<Item name=\"" + key + "\" sample=\"" + std::to_string(i) + '"' + role + '>' +
-             escaped(value) + "</Item>\n";
-    };
-    item("DESCRIPTION", " role=\"description\"", name);
-    item("meaning", "", layers[i].meaning);
-    const bool is_length = name.size() > 2 && name.substr(name.size() - 2) == "_m";
-    if (is_length) item("UNITTYPE", " role=\"unittype\"", "m");
-  }
-  return xml + "</GDALMetadata>\n";
+std::string item_of_band(std::size_t band, const std::string& key, const std::string& role,
+                         const std::string& value) {
+  return "<Item name=\"" + key + "\" sample=\"" + std::to_string(band) + '"' + role + '>' +
+         escaped(value) + "</Item>\n";
 }
 
 /// A strip is a row of a band; the strips follow one another.
@@ -101,7 +93,8 @@ Strips strips_of(const LayeredMap& map) {
 }
 
 /// All fields in the order of their tags.
-std::vector<Field> fields_of(const LayeredMap& map, std::uint64_t first_strip) {
+std::vector<Field> fields_of(const LayeredMap& map, const MapNotes& notes,
+                             std::uint64_t first_strip) {
   using Words = std::vector<std::uint16_t>;
   const HeightMap& grid = map.ground;
   const Strips strips = strips_of(map);
@@ -131,7 +124,7 @@ std::vector<Field> fields_of(const LayeredMap& map, std::uint64_t first_strip) {
   fields.push_back(float_numbers(33922, {0.0, 0.0, 0.0, all.x_min, all.y_max, 0.0}));
   fields.push_back(words(34735, keys));
   fields.push_back(text(34737, frame));
-  fields.push_back(text(42112, metadata_of(map.layers)));
+  fields.push_back(text(42112, geotiff_metadata(map, notes)));
   fields.push_back(text(42113, "nan"));  // NODATA
   for (Field& each : fields) {
     each.bytes.resize(std::max<std::size_t>(4, each.bytes.size() + each.bytes.size() % 2), '\0');
@@ -146,13 +139,109 @@ std::uint64_t size_of_head(const std::vector<Field>& fields) {
   return size;
 }
 
-std::string head_of(const LayeredMap& map) {
-  const std::uint64_t size = size_of_head(fields_of(map, 0));
+// ---- reading ----------------------------------------------------------------------------------
+
+struct Entry {
+  std::uint16_t tag;
+  std::uint16_t type;
+  std::uint32_t count;
+  std::uint32_t value;  ///< or its place in the file
+};
+
+template <typename Number>
+Number number_at(const InputFile& file, std::uint64_t place) {
+  if (place + sizeof(Number) > file.size()) {
+    file.refuse("ends at byte " + std::to_string(file.size()) + ", within the head of a TIFF");
+  }
+  std::array<char, sizeof(Number)> bytes;
+  file.read(place, bytes.data(), bytes.size());
+  return load<Number>(bytes.data(), false);
+}
+
+std::vector<Entry> directory_of(const InputFile& file) {
+  constexpr std::uint32_t begin = 0x002A4949;  // "II", 42
+  constexpr std::uint16_t most_entries = 100;  // ours
+  if (number_at<std::uint32_t>(file, 0) != begin) {
+    file.refuse("byte 0: is no TIFF of numbers with the lowest byte first ('II', 42)");
+  }
+  const auto at = number_at<std::uint32_t>(file, 4);
+  const auto count = number_at<std::uint16_t>(file, at);
+  if (count > most_entries) {
+    file.refuse("byte " + std::to_string(at) + ": a directory of " + std::to_string(count) +
+                " entries, expected at most " + std::to_string(most_entries));
+  }
+  std::vector<Entry> entries;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t place = std::uint64_t{at} + 2 + 12 * i;
+    entries.push_back(
+        {number_at<std::uint16_t>(file, place), number_at<std::uint16_t>(file, place + 2),
+         number_at<std::uint32_t>(file, place + 4), number_at<std::uint32_t>(file, place + 8)});
+  }
+  return entries;
+}
+
+Entry entry_of(const InputFile& file, const std::vector<Entry>& entries, std::uint16_t tag,
+               std::uint16_t type) {
+  for (const Entry& entry : entries) {
+    if (entry.tag == tag && entry.type == type) return entry;
+  }
+  file.refuse("tag " + std::to_string(tag) + " of type " + std::to_string(type) +
+              " is not there: no file of excavplan");
+}
+
+std::string metadata_in(const InputFile& file, const Entry& entry) {
+  constexpr std::uint32_t longest = 1U << 16U;  // ours
+  if (entry.count > longest || std::uint64_t{entry.value} + entry.count > file.size()) {
+    file.refuse("tag 42112, the metadata, has " + std::to_string(entry.count) +
+                " bytes, which are more than " + std::to_string(longest) +
+                " or reach beyond the file");
+  }
+  std::string text(entry.count, '\0');
+  file.read(entry.value, text.data(), text.size());
+  return text;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// What stands in a line of the metadata between these two; nothing if the line is another.
+std::optional<std::string> between(const std::string& line, const std::string& first,
+                                   const std::string& last) {
+  if (line.size() < first.size() + last.size() || line.compare(0, first.size(), first) != 0 ||
+      line.compare(line.size() - last.size(), last.size(), last) != 0) {
+    return std::nullopt;
+  }
+  return line.substr(first.size(), line.size() - first.size() - last.size());
+}
+
+}  // namespace
+
+std::string geotiff_metadata(const LayeredMap& map, const MapNotes& notes) {
+  std::string xml = "<GDALMetadata>\n";
+  for (const MapNote& note : notes) {
+    xml += "<Item name=\"" + note.key + "\">" + escaped(note.value) + "</Item>\n";
+  }
+  for (std::size_t i = 0; i < map.layers.size(); ++i) {
+    const std::string& name = map.layers[i].name;
+    xml += item_of_band(i, "DESCRIPTION", " role=\"description\"", name);
+    xml += item_of_band(i, "meaning", "", map.layers[i].meaning);
+    const bool is_length = name.size() > 2 && name.substr(name.size() - 2) == "_m";
+    if (is_length) xml += item_of_band(i, "UNITTYPE", " role=\"unittype\"", "m");
+  }
+  return xml + "</GDALMetadata>\n";
+}
+
+std::string geotiff_head(const LayeredMap& map, const MapNotes& notes) {
+  const std::uint64_t size = size_of_head(fields_of(map, notes, 0));
   const Strips strips = strips_of(map);
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   require(size + std::uint64_t{strips.count} * strips.bytes <= most,
           "a GeoTIFF of this map would have 4 GiB or more");
-  const std::vector<Field> fields = fields_of(map, size);
+  const std::vector<Field> fields = fields_of(map, notes, size);
   const std::size_t start = 8 + 2 + 12 * fields.size() + 4;
   std::string head = "II";
   std::string values;
@@ -174,21 +263,48 @@ std::string head_of(const LayeredMap& map) {
   return head + values;
 }
 
-}  // namespace
-
-void append_geotiff(const LayeredMap& map, const std::function<void(std::string_view)>& append) {
+std::string geotiff_row(const Eigen::ArrayXXd& values, Eigen::Index row) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  append(head_of(map));
+  std::string bytes;
+  bytes.reserve(8 * static_cast<std::size_t>(values.cols()));
+  for (Eigen::Index col = 0; col < values.cols(); ++col) {
+    const double value = values(row, col);
+    put(std::isfinite(value) ? value : unknown, bytes);
+  }
+  return bytes;
+}
+
+void append_geotiff(const LayeredMap& map, const std::function<void(std::string_view)>& append,
+                    const MapNotes& notes) {
+  append(geotiff_head(map, notes));
   for (const MapLayer& layer : map.layers) {
     for (Eigen::Index row = layer.values.rows() - 1; row >= 0; --row) {
-      std::string bytes;
-      for (Eigen::Index col = 0; col < layer.values.cols(); ++col) {
-        const double value = layer.values(row, col);
-        put(std::isfinite(value) ? value : unknown, bytes);
-      }
-      append(bytes);
+      append(geotiff_row(layer.values, row));
     }
   }
+}
+
+GeotiffSummary read_geotiff_summary(const InputFile& file) {
+  const std::vector<Entry> entries = directory_of(file);
+  GeotiffSummary summary;
+  summary.cols = entry_of(file, entries, 256, long_word).value;
+  summary.rows = entry_of(file, entries, 257, long_word).value;
+  const std::string metadata = metadata_in(file, entry_of(file, entries, 42112, ascii));
+  const auto unescaped = [](const std::string& xml) {
+    return replaced(replaced(xml, "&lt;", "<"), "&amp;", "&");
+  };
+  std::istringstream lines(metadata);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string end = "</Item>";
+    const std::string band = "<Item name=\"DESCRIPTION\" sample=\"" +
+                             std::to_string(summary.bands.size()) + "\" role=\"description\">";
+    if (const auto name = between(line, band, end)) summary.bands.push_back(unescaped(*name));
+    const auto note = between(line, "<Item name=\"", end);
+    const std::size_t middle = note ? note->find("\">") : std::string::npos;
+    if (middle == std::string::npos || note->find('"') != middle) continue;
+    summary.notes.push_back({note->substr(0, middle), unescaped(note->substr(middle + 2))});
+  }
+  return summary;
 }
 
 }  // namespace excavplan

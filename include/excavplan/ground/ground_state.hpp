@@ -32,7 +32,7 @@ void require_ground_state(const GroundState& state, const char* what);
 ///         (bad_file) if it cannot be written: the old file then remains
 void save_ground(const std::string& file, const GroundState& state);
 
-/// Reads a file that save_ground() wrote. load_ground() with a soil (simulation/ground_in_soil.hpp) also
+/// Reads a file that save_ground() wrote. load_ground() with a soil (soil/ground_in_soil.hpp) also
 /// reads the grids of other programs.
 /// @throws Error (bad_file) naming file, place and rule if it is no such file, cut off or damaged
 GroundState load_ground(const std::string& file);

@@ -11,7 +11,7 @@
 namespace excavplan {
 
 /// Ground of another program, with its densities as percentages; what they are as void ratios,
-/// ground_in_soil() says (simulation/ground_in_soil.hpp).
+/// ground_in_soil() says (soil/ground_in_soil.hpp).
 struct PlainGround {
   GroundState ground;                     ///< without void ratios
   Eigen::ArrayXXd bank_density_percent;   ///< relative density 0 .. 100; empty: not told
