@@ -226,8 +226,8 @@ struct Scans {
   double share_before(Cell at) const {
     constexpr double half = 0.5;
     if (variance_before.size() == 0) return half;
-    const double before = variance_before(at.row, at.col);
-    const double share = before / (before + variance_after(at.row, at.col));
+    const double own = variance_before(at.row, at.col);
+    const double share = own / (own + variance_after(at.row, at.col));
     return std::isnan(share) ? half : share;
   }
 };

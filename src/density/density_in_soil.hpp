@@ -46,6 +46,12 @@ struct DensityInSoil {
 DensityInSoil density_in(const DensityLaw& law, const SoilKind* soil, const DugVolumes& dig,
                          const DensityOptions& options);
 
+/// The density by the solids of a dig whose heap is out of sight, in known ground: what was carried
+/// away, and what rose in sight, was bank.
+/// @param change  with a cut
+DensityInSoil density_by_solids(const DensityLaw& law, const SoilKind& soil,
+                                const VolumeChange& change, const DensityOptions& options);
+
 /// The density in any of several kinds of soil.
 struct DensityInAny {
   std::vector<SoilAnswer> soils;

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <excavplan/change/ground_update.hpp>
+#include <excavplan/change/known_ground.hpp>
+#include <excavplan/density/density_options.hpp>
+#include <excavplan/density/density_result.hpp>
+#include <excavplan/ground/ground_state.hpp>
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/scans/scan_surface.hpp>
+
+/// @file
+/// The known ground in a survey of a dig (docs/methods.md#known-ground). Private to the project.
+
+namespace excavplan {
+
+/// Standard deviation of the height of a driven path, in known ground [m]; ours.
+inline constexpr double known_tracking_sd = 0.02;
+
+/// Points on each known cell of the ground, as a scan before that nobody made.
+Scan scan_of(const GroundState& ground);
+
+/// Gives the surface of a scan of scan_of() the deviations of the ground.
+void set_deviation(const GroundState& ground, Surface& before);
+
+/// Leaves out what stood on the ground already and is no soil.
+void leave_out_obstacles(const GroundState& ground, Surface& before);
+
+/// Loose soil on the grid of a map. @param soil  whose loose state dug soil takes; null: unknown
+KnownGround known_ground_on(const HeightMap& grid, const GroundState& ground, const SoilKind* soil);
+
+/// Adds the floor of a path that was dug.
+void add_swept_floor(const DigPath& path, const Machine& machine, const HeightMap& grid,
+                     KnownGround& known);
+
+/// Soil that fell back in known ground, with the error of the path.
+/// @return nothing where the cut has no bank
+Fallback fallback_in(const KnownCut& cut);
+
+/// The ground after the dig. @param surfaces  of the dig, registered
+GroundState ground_after(const DensityOptions& options, const SurfacePair& surfaces,
+                         const VolumeChange& change, const KnownGround& known);
+
+}  // namespace excavplan
