@@ -106,9 +106,8 @@ std::string SiteFolder::read(const StoredFile& file) const {
   }
   std::string content = read(file.name);
   if (checksum_text(content) == file.digest) return content;
-  throw Error(ErrorKind::bad_file, path_of(file.name) +
-                                       ": is damaged: its checksum is not that in " +
-                                       site_manifest);
+  throw Error(ErrorKind::bad_file,
+              path_of(file.name) + ": is damaged: its checksum is not that in " + site_manifest);
 }
 
 StoredFile SiteFolder::write(const std::string& name, const std::string& content) const {
