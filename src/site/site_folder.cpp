@@ -36,7 +36,7 @@ constexpr std::uint64_t most_stored_bytes = std::uint64_t{1} << 32;  // ours
 }
 
 bool is_stored_name(const std::string& name) {
-  static const std::regex form("(ground|belief|site)-[0-9]{1,18}\\.(tif|json)");
+  static const std::regex form("(ground|first|belief|site)-[0-9]{1,18}\\.(tif|json)");
   return std::regex_match(name, form);
 }
 
@@ -113,6 +113,16 @@ std::string SiteFolder::read(const StoredFile& file) const {
 StoredFile SiteFolder::write(const std::string& name, const std::string& content) const {
   write_own_file(path_of(name), content);
   return {name, checksum_text(content)};
+}
+
+void SiteFolder::clear(const std::string& name) const {
+  if (::unlink(path_of(name).c_str()) != 0 && errno != ENOENT) {
+    fail(path_of(name), "cannot be removed");
+  }
+}
+
+StoredFile SiteFolder::stored(const std::string& name) const {
+  return {name, checksum_text(read(name))};
 }
 
 void SiteFolder::rename(const std::string& from, const std::string& to) const {

@@ -39,7 +39,12 @@ class SiteFolder {
   std::string read(const std::string& name) const;
   /// @throws Error (bad_file) also if it is not the content that was stored
   std::string read(const StoredFile& file) const;
+  void require_stored(const StoredFile& file) const { read(file); }
   StoredFile write(const std::string& name, const std::string& content) const;
+  /// Makes way for a file that is written by others.
+  void clear(const std::string& name) const;
+  /// One that others have written.
+  StoredFile stored(const std::string& name) const;
   /// Gives a file the name of another, which it replaces.
   void rename(const std::string& from, const std::string& to) const;
   /// Removes the files of a site that are not these, as a process that was killed leaves them.

@@ -42,6 +42,7 @@ std::string manifest_text(const SiteManifest& manifest) {
                                  {"updates", manifest.generation},
                                  {"digs", manifest.digs}};
   if (!manifest.ground.name.empty()) json["ground"] = json_of(manifest.ground);
+  if (!manifest.first.name.empty()) json["first"] = json_of(manifest.first);
   if (!manifest.belief.name.empty()) json["belief"] = json_of(manifest.belief);
   if (!manifest.previous.name.empty()) json["previous"] = json_of(manifest.previous);
   json["latest"] = nlohmann::ordered_json::array();
@@ -63,6 +64,7 @@ SiteManifest manifest_of(const std::string& name, const std::string& content) {
   manifest.generation = count_of(file, "updates");
   manifest.digs = count_of(file, "digs");
   manifest.ground = file_of(file, "ground");
+  manifest.first = file_of(file, "first");
   manifest.belief = file_of(file, "belief");
   manifest.previous = file_of(file, "previous");
   for (JsonObject& each : file.objects("latest")) {

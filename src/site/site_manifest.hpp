@@ -27,6 +27,7 @@ struct SiteManifest {
   std::string soil = {}, machine = {}, law = {}, frame = {};
   double cell_size = 0.0;  ///< [m]
   StoredFile ground = {};
+  StoredFile first = {};  ///< as each cell was when it was first seen
   StoredFile belief = {};
   StoredFile previous = {};             ///< site.json of the state before; no name: the first
   std::vector<SiteRecord> latest = {};  ///< updates, the last one last; at most most_records
