@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include <excavplan/site/site.hpp>
+#include <excavplan/site/site_settings.hpp>
 
 #include "base/check.hpp"
 #include "ground/grid_cells.hpp"
@@ -88,10 +88,6 @@ GroundState like(const GroundState& ground, const HeightMap& grid) {
 }
 
 }  // namespace
-
-Eigen::Isometry3d BasePose::site_from_machine() const {
-  return Eigen::Translation3d(x, y, z) * Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
-}
 
 Rectangle on_grid(const Rectangle& extent, double cell_size) {
   const auto line = [&](double value, bool up) {

@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include <excavplan/site/site.hpp>
+#include <excavplan/ground/ground_state.hpp>
+#include <excavplan/site/site_event.hpp>
+#include <excavplan/site/site_settings.hpp>
 
 /// @file
 /// What a scan says of a site: its ground after, and the density of the dig.

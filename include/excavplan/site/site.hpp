@@ -8,28 +8,13 @@
 #include <vector>
 
 #include <excavplan/ground/ground_state.hpp>
-#include <excavplan/machine/machine.hpp>
 #include <excavplan/site/site_event.hpp>
-#include <excavplan/soil/density_law.hpp>
-#include <excavplan/soil/soil.hpp>
+#include <excavplan/site/site_settings.hpp>
 
 /// @file
 /// What is remembered between digs, in a folder (docs/guide/site.md).
 
 namespace excavplan {
-
-/// Cells of a site; ours: 112 m square at 5 cm, in a file of 240 MB.
-inline constexpr double most_site_cells = 5e6;
-
-/// What holds for all digs of a site.
-struct SiteSettings {
-  SoilKind soil;
-  Machine machine;
-  DensityLaw law;
-  /// Edge of the cells, which never changes [m]; unset: that of the site, or usual_cell().
-  std::optional<double> cell_size;
-  std::string frame = {};  ///< name of the site's frame; empty: not told
-};
 
 /// Whether a site is to be changed.
 enum class SiteAccess {

@@ -25,6 +25,12 @@ struct BasePose {
   bool is_origin() const { return x == 0.0 && y == 0.0 && z == 0.0 && heading == 0.0; }
 };
 
+/// What a plan foretold of the dig that was then driven: plan_dig(), or a result of plan-path.
+struct ForetoldDig {
+  double density_percent = 0.0;  ///< that it was planned for
+  double joint_work = 0.0;       ///< of the joints in the dig [J]
+};
+
 /// A scan of the site, after one dig or after none.
 struct SiteEvent {
   Scan scan;                   ///< of the ground now, in the site's frame
@@ -35,7 +41,8 @@ struct SiteEvent {
   /// What is known of the dig, in the machine's frame: path, payload, work and more. Kind, law,
   /// cell and prior are those of the site.
   DensityOptions options;
-  bool stalled = false;  ///< the dig was given up
+  std::optional<ForetoldDig> foretold;  ///< by its plan
+  bool stalled = false;                 ///< the dig was given up, which its plan did not foretell
 };
 
 /// What became of an event.
