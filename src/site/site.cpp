@@ -11,6 +11,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "site/scan_digest.hpp"
+#include "site/site_evidence.hpp"
 #include "site/site_grid.hpp"
 #include "site/site_manifest.hpp"
 #include "site/site_store.hpp"
@@ -48,6 +49,51 @@ SiteManifest new_manifest(const SiteSettings& settings) {
   manifest.cell_size = settings.cell_size.value_or(usual_cell(settings.machine));
   require_simulated_cell(manifest.cell_size);
   return manifest;
+}
+
+/// The heights of cells that were seen for the first time are those that they have now.
+void add_first_heights(const GroundState& now, const SiteSettings& settings, GroundState& first) {
+  first = grown(first, now.terrain.bank.extent(), settings.soil.void_ratio_loose);
+  const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> is_new = first.terrain.bank.z.isNaN();
+  first.terrain.bank.z = is_new.select(now.terrain.bank.z, first.terrain.bank.z).eval();
+  first.terrain.loose = is_new.select(now.terrain.loose, first.terrain.loose).eval();
+}
+
+/// That is believed of soil; nothing of none.
+std::optional<RelativeDensity> believed(const DensityBelief& belief,
+                                        const std::vector<BankPart>& bank) {
+  if (bank.empty()) return std::nullopt;
+  const BelievedMeans means = belief.means_of({condensed(bank)});
+  RelativeDensity density;
+  density.raw_percent = means.raw_percent(0);
+  density.percent = std::clamp(density.raw_percent, 0.0, 100.0);
+  set_error(density, std::sqrt(means.covariance(0, 0)));
+  return density;
+}
+
+/// Learns from a dig, of which `next` has the ground already.
+void learn(const SiteEvent& event, const StoredSite& before, StoredSite& next, SiteUpdate& update) {
+  const std::vector<BankPart> bank = bank_cut({before.first, before.ground, next.ground});
+  const auto scan = static_cast<int>(before.manifest.generation);
+  const ScanNumbers scans = {event.before ? -scan - 1 : scan, scan + 1};
+  const DigEvidence evidence = evidence_of(event, *update.estimate, bank, scans);
+  const bool has_density = evidence.survey || evidence.payload_percent;
+  const bool has_news = has_density || !evidence.resistance.empty() || !evidence.limits.empty();
+  if (has_news && !bank.empty()) next.belief.add(evidence);
+  if (has_density) ++next.manifest.digs;
+  update.density = believed(next.belief, bank);
+}
+
+void judge(SiteUpdate& update, const std::string& folder) {
+  if (!update.taken) {
+    update.warnings.emplace_back(WarningCode::scan_not_taken,
+                                 folder +
+                                     ": the scan does not fit the ground of the site where "
+                                     "that did not change: the site stays as it was");
+  }
+  update.trustworthy = (!update.estimate || update.estimate->trustworthy) &&
+                       std::none_of(update.warnings.begin(), update.warnings.end(),
+                                    [](const Warning& warning) { return warning.ends_trust; });
 }
 
 }  // namespace
@@ -89,30 +135,23 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
   require_new(event, digest);
   SiteUpdate update;
   StoredSite next = site;
-  const double fresh = settings.soil.void_ratio_loose;
   if (is_empty()) {
     next.ground = first_ground(event.before.value_or(event.scan), event.time, settings);
     next.first = next.ground;
     update.taken = true;
   }
   if (!is_empty() || event.before) {
-    SurveyedEvent seen = surveyed(event, settings, std::move(next.ground));
-    next.ground = std::move(seen.ground);
+    StoredSite before = next;
+    SurveyedEvent seen = surveyed(event, settings, before.ground);
     update.estimate = std::move(seen.estimate);
     update.warnings = std::move(seen.warnings);
     update.taken = seen.fits;
+    next.ground = std::move(seen.ground);
+    add_first_heights(next.ground, settings, next.first);
+    if (update.taken && update.estimate) learn(event, before, next, update);
   }
-  if (!update.taken) {
-    update.warnings.emplace_back(WarningCode::scan_not_taken,
-                                 store.path() +
-                                     ": the scan does not fit the ground of the site "
-                                     "where that did not change: the site stays as it "
-                                     "was");
-  }
-  update.trustworthy = std::none_of(update.warnings.begin(), update.warnings.end(),
-                                    [](const Warning& warning) { return warning.ends_trust; }) &&
-                       (!update.estimate || update.estimate->trustworthy);
-  static_cast<void>(fresh);
+  judge(update, store.path());
+  update.digs = update.taken ? next.manifest.digs : site.manifest.digs;
   next.manifest.latest.push_back({digest, event.time, update.estimate.has_value()});
   return {std::move(update), std::move(next)};
 }
@@ -159,6 +198,15 @@ double Site::cell_size() const { return state_->site.manifest.cell_size; }
 const GroundState& Site::ground() const {
   require(!is_empty(), state_->store.path() + ": no scan was taken in");
   return state_->site.ground;
+}
+
+const DensityBelief& Site::belief() const { return state_->site.belief; }
+
+GroundDensity Site::density_at(const BasePose& base, const Rectangle& area, double depth) const {
+  const std::vector<BankPart> bank = bank_below(state_->site.first, ground(), base, area, depth);
+  GroundDensity density = belief().ground_density(bank);
+  density.soil = state_->site.manifest.soil;
+  return density;
 }
 
 GroundState Site::ground_for(const BasePose& base, const Rectangle& extent,

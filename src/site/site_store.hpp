@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/belief/density_belief.hpp>
 #include <excavplan/ground/ground_state.hpp>
 
 #include "site/site_folder.hpp"
@@ -20,7 +21,8 @@ namespace excavplan {
 struct StoredSite {
   SiteManifest manifest = {};
   GroundState ground = {};  ///< as it is now; empty of an empty site
-  GroundState first = {};   ///< as each cell was when it was first seen: bank and loose alone
+  DensityBelief belief{};
+  GroundState first = {};  ///< as each cell was when it was first seen: bank and loose alone
 };
 
 class SiteStore {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/belief/density_belief.hpp>
 #include <excavplan/ground/ground_state.hpp>
 #include <excavplan/site/site_event.hpp>
 #include <excavplan/site/site_settings.hpp>
@@ -54,6 +55,12 @@ class Site {
   double cell_size() const;           ///< [m]
   const GroundState& ground() const;  ///< in the site's frame. @throws Error (bad_input) if empty
 
+  const DensityBelief& belief() const;  ///< where in the site's frame which density is believed in
+
+  /// The mean density of the undisturbed soil of an area down to a depth [m].
+  /// @param area  in the machine's frame
+  /// @throws Error (bad_input) if there is no such soil that a scan saw
+  GroundDensity density_at(const BasePose& base, const Rectangle& area, double depth) const;
   /// The ground about a machine, in its frame: cells that no scan saw are unknown.
   /// @param extent  in the machine's frame
   /// @throws Error (bad_input) as flat_ground(), or if the site is empty
