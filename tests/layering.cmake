@@ -6,10 +6,9 @@ cmake_minimum_required(VERSION 3.24)
 
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
-set(rooms base optimisation ground change soil belief machine simulation sensing calibration planning kit
-  clouds scans logs efficiency images recording density site paper experiments results maps drawing
+set(rooms base optimisation ground change soil belief machine simulation sensing calibration planning
+  kit clouds scans logs efficiency images recording density site paper experiments results maps drawing
   figures robot)
-  robot)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
