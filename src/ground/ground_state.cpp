@@ -221,18 +221,22 @@ std::uint64_t require_head(const InputFile& file, const std::string& head) {
   return head.size();
 }
 
-void read_rows(const InputFile& file, std::uint64_t at, GroundState& state) {
+/// @return their seal
+std::string read_rows(const InputFile& file, std::uint64_t at, GroundState& state) {
+  Seal seal(state);
   const auto width = static_cast<std::size_t>(state.terrain.bank.z.cols());
   std::string bytes(8 * width, '\0');
   for_each_row(state, [&](const StateLayer& layer, Eigen::Index row) {
     file.read(at, bytes.data(), bytes.size());
     at += bytes.size();
+    seal.add(bytes);
     for (std::size_t col = 0; col < width; ++col) {
       layer.of(state)(row, static_cast<Eigen::Index>(col)) =
           load<double>(bytes.data() + 8 * col, false);
     }
   });
   file.require_end();
+  return seal.text();
 }
 
 std::string seal_of(const GroundState& state) {
@@ -251,6 +255,22 @@ void require_ground_state(const GroundState& state, const char* what) {
     if (const auto fault = fault_of_layer(layer, state)) refuse(std::string(what) + ": " + *fault);
   }
   if (const auto fault = fault_of_names(state)) refuse(std::string(what) + ": " + *fault);
+}
+
+GroundState after_dig(GroundState state, const Terrain& after) {
+  require_terrain(state.terrain, "ground before a dig");
+  require_terrain(after, "ground after a dig");
+  require(same_grid(state.terrain.bank, after.bank), "a dig leaves the grid of its ground");
+  if (state.deviation.size() > 0) {
+    constexpr double rounding = 1e-9;  // [m]
+    const Eigen::ArrayXXd change = after.surface().z - state.terrain.surface().z;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    state.deviation = (change.abs() > rounding).select(unknown, state.deviation).eval();
+  }
+  Eigen::ArrayXXd told = std::move(state.terrain.bank_void_ratio);
+  state.terrain = after;
+  state.terrain.bank_void_ratio = std::move(told);
+  return state;
 }
 
 void save_ground(const std::string& file, const GroundState& state) {
@@ -278,8 +298,7 @@ GroundState load_ground(const std::string& path) {
   const std::uint64_t begin = require_head(file, head_of(state, seal));
   const auto cells = static_cast<std::uint64_t>(state.terrain.bank.z.size());
   require_bytes(file, begin + 8 * summary.bands.size() * cells);
-  read_rows(file, begin, state);
-  if (seal_of(state) != seal) {
+  if (read_rows(file, begin, state) != seal) {
     file.refuse("its numbers do not have the checksum " + in_quotes(seal) +
                 " of its metadata: the file was changed");
   }

@@ -92,6 +92,7 @@ Json scene_json(const Machine& machine, const DigScene& scene) {
                {"soil_ledger", soil_json(dig.soil)},
                {"dump_at_m", {scene.dump_at.x(), scene.dump_at.y()}},
                {"blocks", nullptr}});
+  if (!scene.dumped) json["dump_at_m"] = nullptr;
   if (const auto& blocks = scene.blocks) {
     json["blocks"] = {
         {"count", blocks->count}, {"soil_m3", blocks->soil}, {"voids_m3", blocks->voids}};

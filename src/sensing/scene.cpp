@@ -11,6 +11,7 @@
 #include <excavplan/change/bulking.hpp>
 #include <excavplan/ground/resampling.hpp>
 #include <excavplan/machine/trajectory.hpp>
+#include <excavplan/soil/ground_in_soil.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
@@ -134,7 +135,7 @@ DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& 
   require_terrain(ground, "ground of a scene");
   if (!options.dump_at.allFinite()) refuse("scene: the dump point must be finite");
   DigPath path = lay_out(machine, ground, options);
-  require_clear_of_dig(options.dump_at, machine, soil, path);
+  if (options.dumps) require_clear_of_dig(options.dump_at, machine, soil, path);
   return path;
 }
 
@@ -144,18 +145,21 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   scene.soil = soil.name;
   scene.density_percent = density_percent;
   scene.dump_at = options.dump_at;
+  scene.dumped = options.dumps;
   scene.before = ground;
   scene.path = scene_path(machine, soil, ground, options);
-  scene.warnings = reach_warnings(scene.dump_at, machine);
+  scene.density_percent = bank_density_percent(ground, soil, swept_strip(machine, scene.path))
+                              .value_or(density_percent);
+  if (scene.dumped) scene.warnings = reach_warnings(scene.dump_at, machine);
   DigOptions dig;
   dig.history = options.history;
-  dig.dump_at = scene.dump_at;
+  if (scene.dumped) dig.dump_at = scene.dump_at;
   const auto simulator = make_simulator(options.simulator, machine, soil, density_percent);
   scene.dig = checked_dig(*simulator, machine, ground, scene.path, dig);
   scene.after = scene.dig.after(ground);
   scene.volumes = height_map_volumes(ground, scene.after, scene.dump_at);
   if (options.blocks) break_up(*options.blocks, soil, scene);
-  scene.bulking_factor_true = bulking_of_density(soil, density_percent);
+  scene.bulking_factor_true = bulking_of_density(soil, scene.density_percent);
   scene.duration = time_dig_path(machine, scene.path, {}, scene.dig.torques).dig_duration();
   return scene;
 }

@@ -11,6 +11,7 @@
 
 #include "base/input_file.hpp"
 #include "base/text.hpp"
+#include "ground/grid_cells.hpp"
 
 namespace excavplan {
 namespace {
@@ -23,11 +24,6 @@ Eigen::ArrayXXd void_ratios(const Eigen::ArrayXXd& density_percent, const SoilKi
     if (std::isnan(density)) return density;
     return std::clamp(soil.void_ratio_max - 0.01 * density * range, soil.void_ratio_min, loosest);
   });
-}
-
-void fill(Eigen::ArrayXXd& ratio, const Eigen::ArrayXXd& like, double value) {
-  if (ratio.size() == 0) ratio = Eigen::ArrayXXd::Constant(like.rows(), like.cols(), value);
-  ratio = ratio.isNaN().select(value, ratio).eval();
 }
 
 void require_ratios(const std::string& file, const Eigen::ArrayXXd& ratios, const char* what,
@@ -78,12 +74,35 @@ GroundState load_ground(const std::string& file, const SoilKind& soil) {
   return state;
 }
 
-GroundState with_void_ratios(GroundState state, const SoilKind& soil, double density_percent) {
-  Terrain& terrain = state.terrain;
-  fill(terrain.bank_void_ratio, terrain.bank.z, bank_state(soil, density_percent).void_ratio);
-  fill(terrain.loose_void_ratio, terrain.bank.z, soil.void_ratio_loose);
-  state.soil = soil.name;
-  return state;
+Terrain terrain_to_dig(const GroundState& state, const SoilKind& soil, double density_percent) {
+  const double of_bank = bank_state(soil, density_percent).void_ratio;
+  Terrain terrain = state.terrain;
+  Eigen::ArrayXXd& bank = terrain.bank_void_ratio;
+  Eigen::ArrayXXd& loose = terrain.loose_void_ratio;
+  bank = bank.isNaN().select(of_bank, bank).eval();
+  if (loose.size() == 0)
+    loose = Eigen::ArrayXXd::Constant(terrain.loose.rows(), terrain.loose.cols(),
+                                      soil.void_ratio_loose);
+  loose = loose.isNaN().select(soil.void_ratio_loose, loose).eval();
+  return terrain;
+}
+
+std::optional<double> bank_density_percent(const Terrain& terrain, const SoilKind& soil,
+                                           const Rectangle& where) {
+  require_soil(soil);
+  const Eigen::ArrayXXd& ratio = terrain.bank_void_ratio;
+  double sum = 0.0;
+  int cells = 0;
+  for_each_cell(ratio, [&](Cell cell) {
+    const bool is_there = where.contains(terrain.bank.x(cell.col), terrain.bank.y(cell.row)) &&
+                          std::isfinite(terrain.bank.z(cell.row, cell.col));
+    if (!is_there || std::isnan(ratio(cell.row, cell.col))) return;
+    sum += ratio(cell.row, cell.col);
+    ++cells;
+  });
+  if (cells == 0) return std::nullopt;
+  const double range = soil.void_ratio_max - soil.void_ratio_min;
+  return std::clamp(100.0 * (soil.void_ratio_max - sum / cells) / range, 0.0, 100.0);
 }
 
 }  // namespace excavplan

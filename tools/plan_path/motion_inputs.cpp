@@ -206,7 +206,7 @@ MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
   check(inputs, machine, cycle);
   if (inputs.surroundings && !terrain.cloud) usage_error("--surroundings needs --terrain");
   MotionGround ground{level_swing_ground(machine)};
-  ground.is_scanned = terrain.cloud.has_value();
+  if (terrain.cloud) ground.known_by = "as scanned";
   if (terrain.frame) {
     ground.pose = Eigen::Isometry3d(frame_named("--terrain-frame", *terrain.frame)).inverse();
   }
@@ -236,7 +236,7 @@ Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const 
 }
 
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
-  const char* on = planned.ground.is_scanned ? "as scanned" : "level, clear ground assumed";
+  const char* const on = planned.ground.known_by;
   outcome.json["ground"] = on;
   if (planned.plan.dig) outcome.lines.push_back(std::string("ground       ") + on);
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;

@@ -31,8 +31,8 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs);
 /// Ground that a motion must be clear of, and where its machine stands.
 struct MotionGround {
   Terrain ground;
-  std::vector<Warning> warnings = {};  ///< of the scans together
-  bool is_scanned = false;             ///< else it is taken to be level and clear
+  std::vector<Warning> warnings = {};                    ///< of the scans together
+  const char* known_by = "level, clear ground assumed";  ///< for people
   /// Of the machine in the frame of the cloud.
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
 };

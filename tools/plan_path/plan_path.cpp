@@ -9,8 +9,8 @@
 #include "frame/tool.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
-#include "plan_path/density_input.hpp"
 #include "plan_path/motion_inputs.hpp"
+#include "plan_path/plan_ground.hpp"
 #include "plan_path/plan_lines.hpp"
 #include "plan_path/plan_plots.hpp"
 #include "plan_path/search_inputs.hpp"
@@ -30,6 +30,7 @@ const About about = {
      {"plan-path --density 40 --joints -40deg,90deg,40deg --whole-cycle --trajectory dig.yaml",
       "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
+     {"plan-path --density 40 --search --ground ground.tif", "on ground as simulate-dig left it"},
      {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
      {"plan-path --density 40 --density-sd 8 --search",
       "the path of highest expected efficiency, and the value of knowing the density"}},
@@ -37,13 +38,11 @@ const About about = {
     true};
 
 struct Inputs {
-  DensityInput density;
+  PlanGroundInputs on;
   std::optional<std::string> library;
   bool search = false;
-  TerrainInput terrain;
   std::string soil = "loam", machine = "zx120";
   SimulatorInputs simulator;
-  std::optional<double> cell_size;
   SearchInputs dig_search;
   MotionInputs motion;
   Plots plots;
@@ -53,29 +52,29 @@ struct Inputs {
 
 SearchUse use_of(const Inputs& inputs) {
   if (inputs.search) return SearchUse::all;
-  return inputs.terrain.is_level() ? SearchUse::none : SearchUse::start_only;
+  return inputs.on.is_level() ? SearchUse::none : SearchUse::start_only;
 }
 
 /// Whether any dig is simulated; a density from a file mostly has an error.
 bool simulates(const Inputs& inputs) {
-  const double sd = inputs.density.sd.value_or(inputs.density.file ? 1.0 : 0.0);
+  const double sd = inputs.on.density.sd.value_or(inputs.on.density.file ? 1.0 : 0.0);
   return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator);
 }
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  declare_density(arguments, inputs.density);
+  declare_density(arguments, inputs.on.density);
   arguments.file(
       "library", inputs.library,
       "path library (default: that of machine-kit, or the shipped one, of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
-  declare_terrain(arguments, inputs.terrain);
-  declare_attitude(arguments, inputs.terrain);
+  declare_plan_ground(arguments, inputs.on);
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   declare_simulator(arguments, inputs.simulator);
   arguments.only_if({[&inputs] { return simulates(inputs); },
                      "nothing is simulated: a library has the digs of level ground"},
-                    [&] { declare_cell(arguments, inputs.cell_size); });
+                    [&] { declare_cell(arguments, inputs.on.cell_size); });
+  arguments.exclude("cell", {"ground"});
   declare_search(arguments, inputs.dig_search, [&inputs] { return use_of(inputs); });
   declare_motion(arguments, inputs.motion);
   const Arguments::Use searches = {[&inputs] { return inputs.search; }, "nothing is searched"};
@@ -96,48 +95,49 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
                         : kit_library(inputs.machine, machine, soil.name,
                                       inputs.dig_search.goal.numbers, options.search.objective);
   options.simulator = simulator_of(inputs.simulator, console);
-  options.cell_size = inputs.cell_size;
+  options.cell_size = inputs.on.cell_size;
   return options;
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
-  check(inputs.density);
+  check(inputs.on.density);
   check(inputs.dig_search);
-  const GroundDensity density = density_of(inputs.density);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const Site site = make_site(inputs.terrain, planning_extent(machine),
-                              inputs.cell_size.value_or(usual_cell(machine)));
+  const PlanGround on = plan_ground(inputs.on, machine, soil);
   PlanOptions options = options_of(inputs, machine, soil, console);
-  const auto area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
-  set_standing(inputs.motion, machine, inputs.terrain, options);
-  const Terrain* const scanned = inputs.terrain.cloud ? &site.ground : nullptr;
+  auto area = motion_ground(inputs.motion, machine, inputs.on.terrain, options.search.objective);
+  if (on.given) area = {on.terrain, {}, "as in the ground file"};
+  set_standing(inputs.motion, machine, inputs.on.terrain, options);
+  const Terrain* const known = on.given || inputs.on.terrain.cloud ? &on.terrain : nullptr;
   DigPlan plan = naming_options(search_option_names, [&] {
-    return scanned ? plan_dig(machine, soil, density, *scanned, options)
-                   : plan_dig(machine, soil, density, options);
+    return known ? plan_dig(machine, soil, on.density, *known, options)
+                 : plan_dig(machine, soil, on.density, options);
   });
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
-  outcome.warnings = plan_warnings(plan, inputs.density, scanned);
-  for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), site.warnings}) {
+  outcome.warnings = plan_warnings(plan, on.density_from, known);
+  for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), on.warnings}) {
     outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
   }
-  outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
-  outcome.json = plan_json(plan, density, options.search.objective);
+  outcome.lines = plan_lines(plan, on.density, soil.name, options.search.objective);
+  outcome.json = plan_json(plan, on.density, options.search.objective);
   outcome.json.update({{"trustworthy", outcome.trustworthy},
                        {"soil", soil.name},
                        {"machine", machine.name},
                        {"simulator", options.simulator.word},
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
-  const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+  const PlanSite dug = {soil, on.density.percent, on.terrain, options.simulator};
   write_motion(inputs.motion, {machine, area, plan, options.search.objective}, outcome);
+  if (on.given) describe(inputs.on.state, *on.given, outcome);
   if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(
       inputs.maps, [&] { return plan_maps(machine, plan, dug); }, outcome);
+  write_ground_after(inputs.on, on, {machine, plan, dug}, outcome);
   return outcome;
 }
 

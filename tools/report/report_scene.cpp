@@ -143,7 +143,7 @@ Json area_json(const ReportArea& area) {
                {"rows", first.z.rows() / by},
                {"cols", first.z.cols() / by},
                {"states", Json::array()}};
-  for (const GroundState& state : area.states) {
+  for (const ShownGround& state : area.states) {
     Json heights = heights_json(coarsened(state.map, by));
     heights["name"] = state.name;
     json["states"].push_back(std::move(heights));

@@ -18,14 +18,14 @@
 namespace excavplan::tools {
 
 /// One state of the ground.
-struct GroundState {
+struct ShownGround {
   std::string name;  ///< "before"
   HeightMap map;
 };
 
 /// Ground of one area in its states, the earliest first, on one grid.
 struct ReportArea {
-  std::vector<GroundState> states;
+  std::vector<ShownGround> states;
   Eigen::ArrayXXi zone = {};  ///< of each cell, index into ReportScene::zones, -1 outside of them
 };
 

@@ -11,6 +11,7 @@
 
 #include "frame/console.hpp"
 #include "inputs/goal_inputs.hpp"
+#include "inputs/ground.hpp"
 #include "inputs/search_method.hpp"
 #include "inputs/simulator_inputs.hpp"
 
@@ -33,6 +34,7 @@ struct ExperimentInputs {
   bool search = false;
   SearchMethodInputs method;  ///< of the search
   std::optional<double> cell_size;
+  GroundInput ground;
   std::uint64_t seed = 1;
   std::uint64_t threads = 0;
 };

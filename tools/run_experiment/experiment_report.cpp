@@ -23,7 +23,7 @@ void add_dig(const std::string& name, const Rehearsal& in, const DigPath& path,
   DigOptions options;
   options.history = true;
   const DigResult dig = checked_dig(in.simulator, in.machine, in.ground, path, options);
-  std::vector<GroundState>& states = scene.areas.front().states;
+  std::vector<ShownGround>& states = scene.areas.front().states;
   states.push_back({"after", dig.after(in.ground).surface()});
   scene.digs.push_back(played_dig(name, in.machine, path, dig));
   scene.digs.back().state = states.size() - 1;

@@ -14,6 +14,7 @@
 #include "run_experiment/experiment_lines.hpp"
 #include "run_experiment/experiment_plots.hpp"
 #include "run_experiment/experiment_report.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -55,16 +56,59 @@ Experiments dig_conditions(const Trial& trial, const std::vector<ExperimentCondi
   return experiments;
 }
 
+/// The ground of --ground without its densities of the bank: those are the conditions'.
+std::optional<GivenGround> experiment_ground(const GroundInput& input, const Trial& trial) {
+  std::optional<GivenGround> given = given_ground(input, trial.machine, trial.soil, 0.0);
+  if (!given) return given;
+  given->density_percent.reset();
+  given->terrain.bank_void_ratio.resize(0, 0);
+  return given;
+}
+
+/// The ground after the planned dig of the last condition, its payload dumped.
+void write_ground_after(const GroundInput& input, const GivenGround* given, const Trial& trial,
+                        const Experiments& experiments) {
+  if (!input.out) return;
+  const ExperimentResult& last = experiments.done.back().result;
+  const ExperimentOptions& options = trial.options;
+  Machine machine = trial.machine;
+  if (!last.held_because.empty()) machine.body.reset();
+  const Terrain start =
+      options.ground
+          ? *options.ground
+          : undisturbed(flat_ground(scene_extent(machine, default_dump_point()),
+                                    options.plan.cell_size.value_or(usual_cell(machine))));
+  const Terrain before =
+      options.second == SecondGround::fresh
+          ? start
+          : first_dig(trial.machine, trial.soil, last.density_percent, options).after;
+  const auto simulator =
+      make_simulator(options.plan.simulator, machine, trial.soil, last.density_percent);
+  DigOptions dig;
+  dig.dump_at = default_dump_point();
+  const Terrain after =
+      checked_dig(*simulator, machine, before, last.planned_path, dig).after(before);
+  write_ground(input, given, start, after, trial.soil);
+}
+
 }  // namespace
+
+void declare_experiment_ground(Arguments& arguments, ExperimentInputs& inputs) {
+  declare_ground(arguments, inputs.ground,
+                 {{"cell", "report"}, "the planned dig of the last condition, with the heap"});
+}
 
 Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& experiment,
                               const ExperimentPages& pages, Console& console) {
   const SoilKind soil = soil_named(experiment.soil);
   const DensityLaw law = law_of(experiment, machine, soil);
-  const ExperimentOptions options = options_of(experiment, machine, soil, console);
+  ExperimentOptions options = options_of(experiment, machine, soil, console);
   if (pages.report && options.second == SecondGround::left) {
     usage_error("--report shows digs on fresh ground, not with --second left");
   }
+  const Trial trial = {machine, soil, law, options};
+  const auto given = experiment_ground(experiment.ground, trial);
+  if (given) options.ground = given->terrain;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
   for (Warning& each : goal_warnings(experiment.goal, {machine})) {
@@ -72,7 +116,7 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   }
   outcome.json["conditions"] = nlohmann::ordered_json::array();
   const Experiments experiments =
-      dig_conditions({machine, soil, law, options}, conditions_of(experiment), console, outcome);
+      dig_conditions(trial, conditions_of(experiment), console, outcome);
   const DensityRegression regression = density_regression(machine, soil, options);
   outcome.json["law"] = law.name;
   outcome.json["regression"] = regression_json(regression);
@@ -83,6 +127,8 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   }
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
+  if (given) describe(experiment.ground, *given, outcome);
+  write_ground_after(experiment.ground, given ? &*given : nullptr, trial, experiments);
   write_plots(pages.plots, experiment_figures({}), {experiments, regression, soil}, outcome.lines,
               outcome.warnings);
   if (pages.report) {

@@ -20,6 +20,9 @@ struct ExperimentPages {
   const std::optional<std::string>& report;
 };
 
+/// --ground, on which every dig of the experiment begins, and --ground-out.
+void declare_experiment_ground(Arguments& arguments, ExperimentInputs& inputs);
+
 Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& experiment,
                               const ExperimentPages& pages, Console& console);
 

@@ -1,27 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <tuple>
 
 #include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/results/force_history.hpp>
 #include <excavplan/sensing/scene.hpp>
 
-#include "base/files.hpp"
-#include "figures/dig_figures.hpp"
 #include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
 #include "inputs/dig_plots.hpp"
-#include "inputs/maps.hpp"
+#include "inputs/ground.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
 #include "machine/dig_path_text.hpp"
-#include "report/dig_report.hpp"
 #include "results/scene_results.hpp"
 #include "simulate_dig/block_inputs.hpp"
-#include "simulate_dig/fuel_log.hpp"
+#include "simulate_dig/scene_files.hpp"
 #include "simulate_dig/scene_lines.hpp"
-#include "simulate_dig/scene_scans.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -31,6 +27,7 @@ const About about = {
     "simulates one dig in soil of known density: payload, energy, joint loads and soil volumes. "
     "Optionally writes depth-camera scans of the ground before and after the dig.",
     {{"simulate-dig --density 40", "the paper's fixed path in medium loam"},
+     {"simulate-dig --density 40 --ground one.tif --ground-out two.tif", "from dig to dig"},
      {"simulate-dig --density 80 --path 43deg,0.2m,2.6m --plot dig.svg", "own path, with plot"},
      {"simulate-dig --density 40 --path-from plan.json", "the path that plan-path --json planned"},
      {"simulate-dig --density 40 --before b.pcd --after a.pcd --seed 7", "write a pair of scans"}}};
@@ -44,12 +41,10 @@ struct Inputs {
   std::string soil = "loam", machine = "zx120";
   SimulatorInputs simulator;
   std::uint64_t seed = 1;
-  SceneScanInputs scans;
-  FuelLogInputs fuel_log;
+  GroundInput ground;
   BlockInputs blocks;
-  Plots plots;
-  Maps maps;
-  std::optional<std::string> path_from, history, report;
+  SceneFiles files;
+  std::optional<std::string> path_from;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -69,18 +64,23 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_terrain(arguments, inputs.terrain);
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   declare_cell(arguments, inputs.cell_size);
-  declare_scans(arguments, inputs.scans);
+  declare_ground(arguments, inputs.ground,
+                 {{"terrain", "terrain-frame", "unit", "cell"}, "the dig, with the heap"});
+  declare_scans(arguments, inputs.files.scans);
   inputs.blocks.declare(arguments);
-  arguments.only_if(
-      {[&inputs] { return inputs.blocks.broken || inputs.scans.any() || inputs.fuel_log.file; },
-       "there are neither scans (--before, --after) nor --blocks nor a --fuel-log"},
-      [&] { arguments.option("seed", inputs.seed, "seed of noise and blocks"); });
-  inputs.fuel_log.declare(arguments);
-  arguments.output("history", inputs.history, "write the loads of each step, CSV");
-  declare_plots(arguments, inputs.plots,
+  arguments.exclude("ground-out", {"blocks"});
+  arguments.only_if({[&inputs] {
+                       return inputs.blocks.broken || inputs.files.scans.any() ||
+                              inputs.files.fuel_log.file;
+                     },
+                     "there are neither scans (--before, --after) nor --blocks nor a --fuel-log"},
+                    [&] { arguments.option("seed", inputs.seed, "seed of noise and blocks"); });
+  inputs.files.fuel_log.declare(arguments);
+  arguments.output("history", inputs.files.history, "write the loads of each step, CSV");
+  declare_plots(arguments, inputs.files.plots,
                 names_of(dig_figures([&inputs] { return machine_named(inputs.machine); })));
-  declare_maps(arguments, inputs.maps, ground_map_names(3));
-  arguments.report(inputs.report);
+  declare_maps(arguments, inputs.files.maps, ground_map_names(3));
+  arguments.report(inputs.files.report);
 }
 
 SceneOptions options_of(const Inputs& inputs, Console& console) {
@@ -95,49 +95,44 @@ SceneOptions options_of(const Inputs& inputs, Console& console) {
   return options;
 }
 
-void write_files(const Inputs& inputs, const Machine& machine, const DigScene& scene,
-                 Outcome& outcome) {
-  write_scans(inputs.scans, scene, inputs.seed);
-  inputs.fuel_log.write(machine, scene, inputs.seed);
-  if (inputs.history) write_file(*inputs.history, force_history_csv(machine, scene));
-  const std::string title = scene_title(scene);
-  const DugDig dug = {machine,
-                      scene.path,
-                      scene.dig,
-                      boom_plane_profile(scene.before),
-                      boom_plane_profile(scene.after),
-                      title};
-  write_plots(inputs.plots, dig_figures({}), dug, outcome.lines, outcome.warnings);
-  write_maps(
-      inputs.maps, [&] { return scene_maps(scene); }, outcome);
-  if (!inputs.report) return;
-  Report report = scene_report(machine, scene);
-  report.title = title;
-  report.plot = to_svg(lay_out(section_figure(dug)));
-  outcome.page = page_of(std::move(report), *inputs.report);
+/// Where the payload can be put: a given ground may end before the default place.
+void place_heap(const GivenGround& given, SceneOptions& options, Outcome& outcome) {
+  const Eigen::Vector2d& at = options.dump_at;
+  const bool is_known = std::isfinite(height_at(given.terrain.surface(), at.x(), at.y()));
+  options.dumps = is_known || at != default_dump_point();
+  if (options.dumps) return;
+  outcome.lines.emplace_back(
+      "payload      stays in the bucket: the ground is not known where it is dumped by default; "
+      "--dump-at");
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
-  const SceneOptions options = options_of(inputs, console);
-  check_scans(inputs.scans);
+  SceneOptions options = options_of(inputs, console);
+  check_scans(inputs.files.scans);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  Site site = make_site(inputs.terrain, scene_extent(machine, options.dump_at),
-                        inputs.cell_size.value_or(usual_cell(machine)));
+  Outcome outcome;
+  const auto given = given_ground(inputs.ground, machine, soil, inputs.density);
+  if (given) place_heap(*given, options, outcome);
+  Site site = given ? Site{given->terrain, {}}
+                    : make_site(inputs.terrain, scene_extent(machine, options.dump_at),
+                                inputs.cell_size.value_or(usual_cell(machine)));
   const Stopwatch watch;
   const OptionNames names = {{"the dump point", "--dump-at"}};
   const DigScene scene = naming_options(
       names, [&] { return run_scene(machine, soil, inputs.density, site.ground, options); });
-  Outcome outcome;
   outcome.json = scene_json(machine, scene);
   outcome.json["wall_time_s"] = watch.seconds();
-  outcome.lines = scene_lines(machine, scene);
+  const std::vector<std::string> lines = scene_lines(machine, scene);
+  outcome.lines.insert(outcome.lines.begin(), lines.begin(), lines.end());
+  if (given) describe(inputs.ground, *given, outcome);
   outcome.warnings = std::move(site.warnings);
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
   if (scene.dig.stall)
     outcome.warnings.emplace_back(WarningCode::stalled, describe(*scene.dig.stall));
-  write_files(inputs, machine, scene, outcome);
+  write_files(inputs.files, machine, scene, inputs.seed, outcome);
+  write_ground(inputs.ground, given ? &*given : nullptr, scene.before, scene.after, soil);
   return outcome;
 }
 

@@ -26,6 +26,12 @@ struct GroundState {
 ///         is NaN or within its bounds, and the names are lines of text
 void require_ground_state(const GroundState& state, const char* what);
 
+/// The state once a dig has changed its terrain, on the same grid. How well a cell is known whose
+/// surface the dig changed is not known: its deviation is NaN; when it was seen stays. So do the
+/// void ratios of the bank, which no dig changes.
+/// @throws Error (bad_input) unless the terrains are on one grid
+GroundState after_dig(GroundState state, const Terrain& after);
+
 /// Writes a state whole or not at all, as a GeoTIFF with a band of float64 for each layer that
 /// GDAL and QGIS open. Every number comes back as it was, NaN as NaN.
 /// @throws Error (bad_input) as require_ground_state(), or if the file would have 4 GiB or more;

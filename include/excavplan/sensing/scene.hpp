@@ -28,6 +28,7 @@ struct SceneOptions {
   std::optional<double> start_x = {};       ///< [m]; empty: make_dig_path_anywhere() chooses it
   DigPathOptions rules = {};                ///< that the path must keep
   Eigen::Vector2d dump_at = default_dump_point();  ///< centre of the heap (x, y) [m]
+  bool dumps = true;                               ///< else the payload stays in the bucket
   SimulatorKind simulator = default_simulator();   ///< that digs
   bool history = false;                            ///< fill DigResult::history
   std::optional<BlockSettings> blocks = {};        ///< if hard soil shall fall as blocks
@@ -42,9 +43,10 @@ DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& 
 /// One dig with the ground before and after it.
 struct DigScene {
   std::string soil;                  ///< its name
-  double density_percent = 0.0;      ///< 0 .. 100
+  double density_percent = 0.0;      ///< of the bank in the strip of the dig, 0 .. 100
   DigPath path;                      ///< that was dug
   Eigen::Vector2d dump_at;           ///< centre of the heap (x, y) [m]
+  bool dumped = true;                ///< else there is no heap: SceneOptions::dumps
   Terrain before;                    ///< the ground before
   Terrain after;                     ///< with the heap
   DigResult dig;                     ///< with a stall, if there was one
@@ -57,7 +59,8 @@ struct DigScene {
 };
 
 /// Digs once and dumps the payload. The ground must contain the path and the heap: scene_extent().
-/// A stall is in the result of the dig.
+/// The density is that of the bank where the ground tells no void ratios. A stall is in the result
+/// of the dig.
 ///
 /// @throws Error (bad_input) as scene_path() or SoilSimulator::dig()
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,

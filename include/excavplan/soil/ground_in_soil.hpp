@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <excavplan/ground/plain_ground.hpp>
@@ -19,9 +20,14 @@ GroundState ground_in_soil(const PlainGround& plain, const SoilKind& soil);
 /// range
 GroundState load_ground(const std::string& file, const SoilKind& soil);
 
-/// The state with void ratios in all cells: where the bank's are not known those of this density,
-/// where the loose layer's are not known void_ratio_loose. So the state says what was dug.
+/// The terrain of a state with the void ratios that it does not tell: of the bank, where it tells
+/// any, those of this density, of the loose soil void_ratio_loose.
 /// @throws Error (bad_input) as bank_state()
-GroundState with_void_ratios(GroundState state, const SoilKind& soil, double density_percent);
+Terrain terrain_to_dig(const GroundState& state, const SoilKind& soil, double density_percent);
+
+/// Mean relative density of the bank in the cells whose centres lie in a rectangle; nothing if the
+/// terrain tells none there [%]. @throws Error (bad_input) as require_soil()
+std::optional<double> bank_density_percent(const Terrain& terrain, const SoilKind& soil,
+                                           const Rectangle& where);
 
 }  // namespace excavplan
