@@ -6,6 +6,7 @@
 #include "estimate_density/estimate_plots.hpp"
 #include "estimate_density/method_inputs.hpp"
 #include "estimate_density/second_densities.hpp"
+#include "estimate_density/site_estimate.hpp"
 #include "estimate_density/soil_inputs.hpp"
 #include "estimate_density/survey_map_names.hpp"
 #include "estimate_density/survey_planning.hpp"
@@ -31,6 +32,8 @@ const About about = {
       "joins the density by the work of the joints; simulate-dig --history writes such a log"},
      {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
+     {"estimate-density after.pcd --site pit --dug plan.json",
+      "the next dig on a site that is remembered, planned by plan-path --site pit --json"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
       "without scans: expected density error of a D435i on a 2.5 m mast"}},
     true};
@@ -46,15 +49,17 @@ struct Inputs {
   std::optional<std::string> plan_survey;
   SoilInputs soil;
   SecondDensities second;
+  SiteEstimateInputs site;
   Plots plots;
   Maps maps;
   std::optional<std::string> report;
 };
 
 void declare_estimate(Arguments& arguments, Inputs& inputs) {
-  arguments.positional(
-      "BEFORE", inputs.before,
-      "cloud before the dig: PCD, PLY, LAS or XYZ, or " + std::string(recording_form));
+  arguments.positional("BEFORE", inputs.before,
+                       "cloud before the dig: PCD, PLY, LAS or XYZ, or " +
+                           std::string(recording_form) +
+                           "; one cloud alone is that after it, on a --site");
   arguments.positional("AFTER", inputs.after, "cloud after the dig");
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
@@ -78,6 +83,7 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
                      "--method paper has no error to weigh a second density by"},
                     [&] { inputs.second.declare(arguments); });
   declare_dug_path(arguments, inputs.method);
+  declare_site(arguments, inputs.site);
   declare_machine_in_view(arguments, inputs.frames.view);
   declare_plots(arguments, inputs.plots, names_of(estimate_figures()));
   declare_maps(arguments, inputs.maps, survey_map_names(inputs.dump_before));
@@ -101,6 +107,33 @@ DigScans scans_of(const Inputs& inputs, ScanReport& report) {
   return scans;
 }
 
+/// What is known of the dig beside its scans.
+struct KnownDig {
+  Machine machine;
+  DensityOptions options;
+  DensityLaw law;
+};
+
+KnownDig known_dig(const Inputs& inputs) {
+  KnownDig dig{machine_named(inputs.frames.view.machine), inputs.options, {}};
+  dig.options.registered = !inputs.still;
+  apply_method(inputs.method, dig.machine, dig.options);
+  dig.law = law_of(inputs.soil, inputs.frames.view.machine, dig.options);
+  return dig;
+}
+
+/// A result with all that is asked to be shown of it.
+Outcome shown_estimate(const Inputs& inputs, const KnownDig& dig, const DensityEstimate& counts,
+                       const TakenUnits& units) {
+  Outcome outcome = estimate_outcome(counts, dig.options.soil);
+  add_machine_warnings(counts, dig.law, dig.machine, units, outcome);
+  inputs.second.check(counts, outcome);
+  draw_estimate(inputs.plots, inputs.report, counts, outcome);
+  write_maps(
+      inputs.maps, [&] { return survey_maps(counts.change, counts.before); }, outcome);
+  return outcome;
+}
+
 Outcome work_on_scans(const Inputs& inputs) {
   check_method(inputs.method);
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
@@ -108,24 +141,60 @@ Outcome work_on_scans(const Inputs& inputs) {
   }
   ScanReport report;
   const DigScans scans = scans_of(inputs, report);
-  const Machine machine = machine_named(inputs.frames.view.machine);
-  DensityOptions options = inputs.options;
-  options.registered = !inputs.still;
-  apply_method(inputs.method, machine, options);
-  const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
-  inputs.second.apply_to(law, options);
-  const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
+  KnownDig dig = known_dig(inputs);
+  const DensityOptions& options = dig.options;
+  inputs.second.apply_to(dig.law, dig.options);
+  const auto by_method = [&] { return estimate(inputs.method, scans, dig.law, options); };
   const BothEstimates both =
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
-  Outcome outcome = estimate_outcome(counts, options.soil);
-  add_machine_warnings(counts, law, machine, {scans.before.unit, report.in_counts}, outcome);
-  inputs.second.check(counts, outcome);
+  Outcome outcome = shown_estimate(inputs, dig, counts, {scans.before.unit, report.in_counts});
   report.add_to(outcome);
-  draw_estimate(inputs.plots, inputs.report, counts, outcome);
-  write_maps(
-      inputs.maps, [&] { return survey_maps(counts.change, counts.before); }, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);
+  return outcome;
+}
+
+void check_site(const Inputs& inputs) {
+  const auto refuse_if = [](bool is_given, const char* what) {
+    if (is_given) usage_error(std::string("--site excludes ") + what);
+  };
+  refuse_if(inputs.method.uses("paper"), "--method paper: the ground is known by its surface");
+  refuse_if(inputs.dump_before || inputs.dump_after,
+            "--dump-before and --dump-after: a site is one scene");
+  refuse_if(inputs.second.prior.has_value(), "--prior: the site knows the digs before");
+  refuse_if(inputs.soil.soil == "unknown", "--soil unknown: a site is of one soil");
+}
+
+Outcome work_on_site(const Inputs& inputs) {
+  check_site(inputs);
+  if (!inputs.before && !inputs.after) return site_outcome(inputs.site);
+  if (inputs.site.undo) usage_error("--undo takes no scans");
+  ScanReport report;
+  SiteEvent event;
+  if (inputs.after) {
+    ScanPair pair = placed_pair(*inputs.before, *inputs.after, inputs.frames, report);
+    event.before = std::move(pair.before);
+    event.scan = std::move(pair.after);
+  } else {
+    event.scan = placed_scan(*inputs.before, inputs.frames, report);
+  }
+  KnownDig dig = known_dig(inputs);
+  event.options = dig.options;
+  add_told_dig(inputs.site, dig.machine, event);
+  inputs.second.apply_to(dig.law, event.options);
+  const SiteSettings settings = {
+      *dig.options.soil.kind, dig.machine, dig.law, inputs.options.cell_size, {}};
+  excavplan::Site site(*inputs.site.at.folder, settings, access_of(inputs.site));
+  const SiteUpdate update = naming_options(estimate_options, [&] {
+    return with_frame_hint("--after-frame transforms it into the frame of the site",
+                           [&] { return told_site(inputs.site, site, event); });
+  });
+  Outcome outcome;
+  if (update.estimate) {
+    outcome = shown_estimate(inputs, dig, *update.estimate, {event.scan.unit, report.in_counts});
+  }
+  add_site(site, update, outcome);
+  report.add_to(outcome);
   return outcome;
 }
 
@@ -134,6 +203,7 @@ Outcome work(const Inputs& inputs) {
     if (inputs.before || inputs.after) usage_error("--plan-survey takes no scans");
     return planned_survey(*inputs.plan_survey, law_named(inputs.soil.law));
   }
+  if (inputs.site.is_used()) return work_on_site(inputs);
   if (!inputs.before || !inputs.after) {
     usage_error(std::string(inputs.before ? "AFTER" : "BEFORE") +
                 " is missing: a cloud before the dig and one after it are needed");
