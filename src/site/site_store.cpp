@@ -7,6 +7,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
+#include "site/stored_belief.hpp"
 
 namespace excavplan {
 namespace {
@@ -62,6 +63,8 @@ StoredSite SiteStore::load(const std::string& manifest) const {
   if (site.manifest.generation == 0) return site;
   site.ground = load(site.manifest.ground);
   site.first = load(site.manifest.first);
+  site.belief =
+      belief_of(folder_.path_of(site.manifest.belief.name), folder_.read(site.manifest.belief));
   return site;
 }
 
@@ -86,6 +89,8 @@ void SiteStore::save(const StoredSite& now, StoredSite& next) const {
   manifest.ground = save("ground", next.ground, manifest.generation);
   const bool is_kept = now.manifest.generation > 0 && same_heights(now.first, next.first);
   if (!is_kept) manifest.first = save("first", next.first, manifest.generation);
+  manifest.belief =
+      folder_.write(stored_name("belief", manifest.generation, ".json"), belief_text(next.belief));
   manifest.previous = folder_.write(stored_name("site", now.manifest.generation, ".json"),
                                     manifest_text(now.manifest));
   folder_.write(site_manifest, manifest_text(manifest));

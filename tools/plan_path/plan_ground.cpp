@@ -31,7 +31,7 @@ PlanGround ground_of_site(const PlanGroundInputs& inputs, const Machine& machine
         "tell the density");
   }
   const bool is_told = told.percent || told.file;
-  PlanGround ground = {{}, is_told ? density_of(told) : site->density_in_reach(), told, {}, {}};
+  PlanGround ground = {{}, is_told ? density_of(told) : site->density_in_reach(), told, {}, {}, {}};
   ground.site = site;
   GroundState known;
   known.terrain =
@@ -73,7 +73,7 @@ bool PlanGround::takes_density_under(const DigPlan& plan) {
 PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
                        const SoilKind& soil) {
   if (inputs.site.folder) return ground_of_site(inputs, machine, soil);
-  PlanGround ground = {{}, density_of(inputs.density), inputs.density, std::nullopt, {}};
+  PlanGround ground = {{}, density_of(inputs.density), inputs.density, std::nullopt, {}, {}};
   ground.given = given_ground(inputs.state, machine, soil, ground.density.percent);
   if (ground.given) {
     ground.terrain = ground.given->terrain;
