@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -23,11 +24,18 @@ namespace excavplan::test {
 inline SiteSettings loam_site() {
   return {load_soil(find_data_file("soils/loam.json")),
           load_machine(find_data_file("machines/zx120.json")),
-          load_density_law(find_data_file("laws/zx120-loam.json")), 0.05, {}};
+          load_density_law(find_data_file("laws/zx120-loam.json")),
+          0.05,
+          {}};
+}
+
+inline bool has(const std::vector<Warning>& warnings, WarningCode code) {
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const Warning& warning) { return warning.code == code; });
 }
 
 /// Points of a surface, four in a cell, with errors of 3 mm.
-inline Scan scanned(const HeightMap& surface, std::uint64_t seed, const Eigen::Vector3d& shift = {}) {
+inline Scan scanned(const HeightMap& surface, std::uint64_t seed, const Eigen::Vector3d& shift) {
   Random random(7, seed);
   auto cloud = std::make_shared<Cloud>();
   const double step = 0.5 * surface.cell_size;
