@@ -120,7 +120,7 @@ class Updater {
   int cause_of(Cell at, double change, double sd) const {
     if (!survey_.is_told) return std::abs(change) > telling * sd ? something : nothing;
     const auto cause = static_cast<int>(survey_.changed(at.row, at.col));
-    if (cause == dig && swept_below(at)) return dig;
+    if (cause != something && swept_below(at)) return dig;
     return std::abs(change) > sure * sd ? cause : static_cast<int>(nothing);
   }
 
@@ -158,8 +158,7 @@ class Updater {
     Eigen::ArrayXXd& ratios = state_.terrain.loose_void_ratio;
     if (ratios.size() == 0 || !fresh_ || !(loose > 0.0)) return;
     double& ratio = ratios(at.row, at.col);
-    const double old = std::isnan(ratio) || survey_.changed(at.row, at.col) != dig ||
-                               swept_below(at)
+    const double old = std::isnan(ratio) || swept_below(at)
                            ? 0.0
                            : std::min(kept, loose);
     const double solids = old / (1.0 + ratio) + (loose - old) / (1.0 + *fresh_);

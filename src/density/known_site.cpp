@@ -44,6 +44,29 @@ ColumnFloor column_floor(const DigPath& path, const HeightMap& grid, Eigen::Inde
   return {sum / known, static_cast<double>(known) / samples_per_cell};
 }
 
+/// Rows of cells under the bucket.
+struct RowsUnder {
+  const HeightMap& map;
+  double half;  ///< of its width [m]
+  Eigen::Index first = 0;
+  Eigen::Index end;
+
+  RowsUnder(const HeightMap& on, double half_width) : map(on), half(half_width), end(on.z.rows()) {
+    while (first < end && !(cover(first) > 0.0)) ++first;
+    while (end > first && !(cover(end - 1) > 0.0)) --end;
+  }
+  double cover(Eigen::Index row) const {
+    const double low = map.y(row) - 0.5 * map.cell_size;
+    const double under = std::min(half, low + map.cell_size) - std::max(-half, low);
+    return std::clamp(under / map.cell_size, 0.0, 1.0);
+  }
+  Eigen::Index inside(Eigen::Index row) const {
+    constexpr double whole = 1.0 - 1e-9;
+    if (end - first < 3 || cover(row) > whole) return row;
+    return row == first ? row + 1 : row - 1;
+  }
+};
+
 /// By how much the ground that was known lies above the scan before where nothing changed.
 double offset_of(const GroundState& ground, const SurfacePair& surfaces, const AreaChange& area) {
   const HeightMap& before = surfaces.before.height;
@@ -90,9 +113,9 @@ SeenGround seen_after(const SurfacePair& surfaces, const VolumeChange& change,
     if (rise > in_the_way) seen.obstacles(at.row, at.col) = height;
     height = std::nan("");
   });
-  if (known.swept.size() > 0) {
-    constexpr double most = 0.5;  // of a cell, that counts as swept
-    seen.swept = (known.cover > most).select(known.swept + offset, std::nan(""));
+  if (known.cut.size() > 0) {
+    const Eigen::ArrayXXd left = before.z - known.loose - known.cut + offset;
+    seen.swept = (known.cut > 0.0).select(left, std::nan(""));
   }
   return seen;
 }
@@ -152,20 +175,20 @@ KnownGround known_ground_on(const HeightMap& grid, const GroundState& ground,
   return known;
 }
 
-void add_swept_floor(const DigPath& path, const Machine& machine, const HeightMap& grid,
-                     KnownGround& known) {
-  const double half = 0.5 * machine.bucket.width_outside;
-  known.swept.setConstant(grid.z.rows(), grid.z.cols(), std::nan(""));
-  known.cover.setZero(grid.z.rows(), grid.z.cols());
-  for (Eigen::Index col = 0; col < grid.z.cols(); ++col) {
-    const ColumnFloor floor = column_floor(path, grid, col);
+void add_cut(const DigPath& path, const Machine& machine, const HeightMap& before,
+             KnownGround& known) {
+  const RowsUnder rows(before, 0.5 * machine.bucket.width_outside);
+  known.cut.setZero(before.z.rows(), before.z.cols());
+  known.cover.setZero(before.z.rows(), before.z.cols());
+  for (Eigen::Index col = 0; col < before.z.cols(); ++col) {
+    const ColumnFloor floor = column_floor(path, before, col);
     if (!(floor.share > 0.0)) continue;
-    for (Eigen::Index row = 0; row < grid.z.rows(); ++row) {
-      const double low = grid.y(row) - 0.5 * grid.cell_size;
-      const double under = std::min(half, low + grid.cell_size) - std::max(-half, low);
-      if (!(under > 0.0)) continue;
-      known.swept(row, col) = floor.height;
-      known.cover(row, col) = std::min(1.0, floor.share * under / grid.cell_size);
+    for (Eigen::Index row = rows.first; row < rows.end; ++row) {
+      const Eigen::Index inside = rows.inside(row);
+      const double cut =
+          before.z(inside, col) - known.loose(inside, col) - floor.height;
+      known.cover(row, col) = floor.share * rows.cover(row);
+      if (cut > 0.0) known.cut(row, col) = known.cover(row, col) * cut;
     }
   }
 }
