@@ -85,7 +85,10 @@ class Updater {
       return;
     }
     const double z = survey_.height(at.row, at.col);
-    if (std::isnan(z)) return;
+    if (std::isnan(z)) {
+      if (swept_below(at)) leave_as_swept(at, bank, loose);
+      return;
+    }
     if (state_.terrain.obstacles.size() > 0) {
       state_.terrain.obstacles(at.row, at.col) = std::nan("");
     }
@@ -128,6 +131,14 @@ class Updater {
   bool swept_below(Cell at) const {
     const double floor = known_at(survey_.swept, at, std::nan(""));
     return floor < state_.terrain.bank.z(at.row, at.col);
+  }
+
+  /// Nobody saw what lies there now.
+  void leave_as_swept(Cell at, double& bank, double& loose) {
+    bank = survey_.swept(at.row, at.col);
+    loose = 0.0;
+    double& deviation = state_.deviation(at.row, at.col);
+    deviation = std::max(known_at(state_.deviation, at, 0.0), reopened_sd);
   }
 
   /// Variance of what was known, without what the heights of a survey share.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/statistics.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double standing = 0.2;  // ours: nearer to the top of a known obstacle it still stands [m]
 constexpr double in_the_way = 0.3;  // ours: a thing as high is an obstacle [m]
+constexpr double between_points = 0.25;  // ours: a gap as wide counts as seen [m]
+constexpr double filled_sd = 0.03;       // ours: of a height in it [m]
 constexpr int samples_per_cell = 8;  // of the tip's line
 
 Eigen::ArrayXXd known_or(const Eigen::ArrayXXd& layer, double other) {
@@ -85,6 +88,17 @@ int cause_of(const VolumeChange& change, int zone) {
   return change.zones[static_cast<std::size_t>(zone)].kind == ZoneKind::other ? 2 : 1;
 }
 
+/// Ground between the points of a scan is as high as theirs.
+void fill_between_points(SeenGround& seen) {
+  const HeightMap& map = seen.surface;
+  const Eigen::ArrayXXd filled =
+      resampled(map, map.extent(), map.cell_size, between_points).z.block(0, 0, map.z.rows(),
+                                                                         map.z.cols());
+  const Eigen::ArrayXXd own = seen.deviation;
+  seen.deviation = (map.z.isNaN() && !filled.isNaN()).select(filled_sd, own);
+  seen.surface.z = (map.z.isNaN() && seen.obstacles.isNaN()).select(filled, map.z);
+}
+
 /// The survey after a dig, in the heights of the known ground.
 SeenGround seen_after(const SurfacePair& surfaces, const VolumeChange& change,
                       const KnownGround& known, double offset) {
@@ -117,6 +131,19 @@ SeenGround seen_after(const SurfacePair& surfaces, const VolumeChange& change,
     const Eigen::ArrayXXd left = before.z - known.loose - known.cut + offset;
     seen.swept = (known.cut > 0.0).select(left, std::nan(""));
   }
+  fill_between_points(seen);
+  return seen;
+}
+
+/// The ground before as the scan before shows it, where it was not known.
+SeenGround seen_before(const GroundState& ground, const Surface& before, double offset) {
+  SeenGround seen;
+  seen.surface = before.height;
+  const Eigen::ArrayXXd known =
+      layer_on(before.height, ground.terrain.bank, ground.terrain.bank.z);
+  seen.surface.z = known.isNaN().select(before.height.z + offset, std::nan(""));
+  if (before.variance.size() > 0) seen.deviation = before.variance.sqrt();
+  seen.changed.setZero(before.height.z.rows(), before.height.z.cols());
   return seen;
 }
 
@@ -211,7 +238,9 @@ GroundState ground_after(const DensityOptions& options, const SurfacePair& surfa
   seen.time = options.scan_time;
   std::optional<double> loose;
   if (options.soil.kind) loose = options.soil.kind->void_ratio_loose;
-  return updated_ground(*options.ground, seen, loose);
+  SeenGround before = seen_before(*options.ground, surfaces.before, offset);
+  before.time = options.scan_time;
+  return updated_ground(updated_ground(*options.ground, before), seen, loose);
 }
 
 }  // namespace excavplan

@@ -38,7 +38,8 @@ inline constexpr double reopened_sd = 0.05;
 /// A cell that did not change is the mean of least variance of what was known and what was seen, its
 /// loose soil as thick as before. In one that did, the bank is the lowest of what it was, what
 /// the bucket left of it and the surface seen; what lies on it is loose. A cell that was never seen is
-/// bank. One that was not seen now stays as it is, with its time. Under what stands on the ground
+/// bank. One that was not seen now stays as it is, with its time; where the
+/// bucket swept it is left as by the bucket, with a deviation of reopened_sd at least. Under what stands on the ground
 /// the layers stay and its top is noted. A cell that something else changed has a deviation of
 /// reopened_sd at least.
 ///
