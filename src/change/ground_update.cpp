@@ -85,7 +85,10 @@ class Updater {
       return;
     }
     const double z = survey_.height(at.row, at.col);
-    if (std::isnan(z)) return;
+    if (std::isnan(z)) {
+      if (swept_below(at)) leave_as_swept(at, bank, loose);
+      return;
+    }
     if (state_.terrain.obstacles.size() > 0) {
       state_.terrain.obstacles(at.row, at.col) = std::nan("");
     }
@@ -120,7 +123,7 @@ class Updater {
   int cause_of(Cell at, double change, double sd) const {
     if (!survey_.is_told) return std::abs(change) > telling * sd ? something : nothing;
     const auto cause = static_cast<int>(survey_.changed(at.row, at.col));
-    if (cause == dig && swept_below(at)) return dig;
+    if (cause != something && swept_below(at)) return dig;
     return std::abs(change) > sure * sd ? cause : static_cast<int>(nothing);
   }
 
@@ -128,6 +131,14 @@ class Updater {
   bool swept_below(Cell at) const {
     const double floor = known_at(survey_.swept, at, std::nan(""));
     return floor < state_.terrain.bank.z(at.row, at.col);
+  }
+
+  /// Nobody saw what lies there now.
+  void leave_as_swept(Cell at, double& bank, double& loose) {
+    bank = survey_.swept(at.row, at.col);
+    loose = 0.0;
+    double& deviation = state_.deviation(at.row, at.col);
+    deviation = std::max(known_at(state_.deviation, at, 0.0), reopened_sd);
   }
 
   /// Variance of what was known, without what the heights of a survey share.
@@ -158,8 +169,7 @@ class Updater {
     Eigen::ArrayXXd& ratios = state_.terrain.loose_void_ratio;
     if (ratios.size() == 0 || !fresh_ || !(loose > 0.0)) return;
     double& ratio = ratios(at.row, at.col);
-    const double old = std::isnan(ratio) || survey_.changed(at.row, at.col) != dig ||
-                               swept_below(at)
+    const double old = std::isnan(ratio) || swept_below(at)
                            ? 0.0
                            : std::min(kept, loose);
     const double solids = old / (1.0 + ratio) + (loose - old) / (1.0 + *fresh_);

@@ -40,8 +40,7 @@ struct CellCut {
 
 class CutReader {
  public:
-  CutReader(const KnownGround& known, const HeightMap& before, const Area& area)
-      : known_(known), before_(before), area_(area) {}
+  CutReader(const KnownGround& known, const Area& area) : known_(known), area_(area) {}
 
   CellCut at(Cell cell) const {
     const double fall = -area_.ground.difference(cell.row, cell.col);
@@ -67,21 +66,19 @@ class CutReader {
   CellCut under_bucket(Cell cell, double fall, double loose) const {
     CellCut cut;
     const double cover = value_at(known_.cover, cell, 0.0);
-    const double floor = value_at(known_.swept, cell, std::nan(""));
-    const double before = before_.z(cell.row, cell.col);
-    if (!(cover > 0.0) || std::isnan(before - floor) || before - loose <= floor) return cut;
+    const double bank = value_at(known_.cut, cell, 0.0);
+    if (!(cover > 0.0 && bank > 0.0)) return cut;
     cut.swept = cover;
-    cut.bank = cover * (before - loose - floor);
+    cut.bank = bank;
     cut.fallen = std::isnan(fall) ? fall : 0.0;
     if (cover < whole) return cut;
     cut.loose = loose;
     cut.reached = true;
-    cut.fallen = before - fall - floor;
+    cut.fallen = loose + bank - fall;
     return cut;
   }
 
   const KnownGround& known_;
-  const HeightMap& before_;
   const Area& area_;
 };
 
@@ -89,7 +86,7 @@ class CutReader {
 
 void require_known_ground(const KnownGround& known, const HeightMap& before) {
   for (const Eigen::ArrayXXd* layer :
-       {&known.loose, &known.loose_sd, &known.swelling, &known.swept, &known.cover}) {
+       {&known.loose, &known.loose_sd, &known.swelling, &known.cut, &known.cover}) {
     const bool fits = layer->size() == 0 || (layer->rows() == before.z.rows() &&
                                              layer->cols() == before.z.cols());
     if (!fits) {
@@ -116,9 +113,8 @@ void find_loose_soil(const KnownGround& known, Area& area) {
   });
 }
 
-void take_loose_soil(const KnownGround& known, const HeightMap& before, const Area& area,
-                     VolumeChange& change) {
-  const CutReader reader(known, before, area);
+void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& change) {
+  const CutReader reader(known, area);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   KnownCut cut;
   double beyond = 0.0;    // bank cut beyond what the hole's own sum holds

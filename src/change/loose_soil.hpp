@@ -23,11 +23,8 @@ void find_loose_soil(const KnownGround& known, Area& area);
 /// soil, and states the cut. What rose less what fell stays.
 ///
 /// With d the fall of a cell and l its loose soil, the hole took min(d, l) of that, and d - l of the
-/// bank. Where the bucket swept into the bank it took all of l: the cut is bank - floor, and what
-/// lies above the floor has fallen back.
-///
-/// @param before  heights before, on the grid of the area
-void take_loose_soil(const KnownGround& known, const HeightMap& before, const Area& area,
-                     VolumeChange& change);
+/// bank. Where the bucket cut c of the bank it took all of l, and what lies above its floor has fallen
+/// back: l + c - d.
+void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& change);
 
 }  // namespace excavplan

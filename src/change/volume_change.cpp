@@ -198,7 +198,7 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   set_deviations(change);
   warn_of_balance(change);
   if (known != nullptr) {
-    take_loose_soil(*known, *before.front(), areas.front(), change);
+    take_loose_soil(*known, areas.front(), change);
     set_deviations(change);
   }
   state_open_changes(areas, attribution, change);

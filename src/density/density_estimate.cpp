@@ -192,12 +192,12 @@ SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOp
   if (options.dug_path && options.dug_path->start_x) {
     const Machine& machine = options.dug_path->machine;
     const DigPath path = path_of(*options.dug_path, before, rules_for_planned_path());
-    add_swept_floor(path, machine, before, *volumes.known);
+    add_cut(path, machine, before, *volumes.known);
     if (!told.dig_area) told.dig_area = around(swept_strip(machine, path));
     volumes.change = change_of(surfaces, &*volumes.known, told);
     doubt = doubt_of(*volumes.change.cut);
     if (!doubt) return volumes;
-    volumes.known->swept = volumes.known->cover = {};
+    volumes.known->cut = volumes.known->cover = {};
   }
   volumes.change = change_of(surfaces, &*volumes.known, options.change);
   if (doubt) volumes.change.warnings.push_back(*doubt);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/statistics.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double standing = 0.2;  // ours: nearer to the top of a known obstacle it still stands [m]
 constexpr double in_the_way = 0.3;  // ours: a thing as high is an obstacle [m]
+constexpr double between_points = 0.25;  // ours: a gap as wide counts as seen [m]
+constexpr double filled_sd = 0.03;       // ours: of a height in it [m]
 constexpr int samples_per_cell = 8;  // of the tip's line
 
 Eigen::ArrayXXd known_or(const Eigen::ArrayXXd& layer, double other) {
@@ -44,6 +47,29 @@ ColumnFloor column_floor(const DigPath& path, const HeightMap& grid, Eigen::Inde
   return {sum / known, static_cast<double>(known) / samples_per_cell};
 }
 
+/// Rows of cells under the bucket.
+struct RowsUnder {
+  const HeightMap& map;
+  double half;  ///< of its width [m]
+  Eigen::Index first = 0;
+  Eigen::Index end;
+
+  RowsUnder(const HeightMap& on, double half_width) : map(on), half(half_width), end(on.z.rows()) {
+    while (first < end && !(cover(first) > 0.0)) ++first;
+    while (end > first && !(cover(end - 1) > 0.0)) --end;
+  }
+  double cover(Eigen::Index row) const {
+    const double low = map.y(row) - 0.5 * map.cell_size;
+    const double under = std::min(half, low + map.cell_size) - std::max(-half, low);
+    return std::clamp(under / map.cell_size, 0.0, 1.0);
+  }
+  Eigen::Index inside(Eigen::Index row) const {
+    constexpr double whole = 1.0 - 1e-9;
+    if (end - first < 3 || cover(row) > whole) return row;
+    return row == first ? row + 1 : row - 1;
+  }
+};
+
 /// By how much the ground that was known lies above the scan before where nothing changed.
 double offset_of(const GroundState& ground, const SurfacePair& surfaces, const AreaChange& area) {
   const HeightMap& before = surfaces.before.height;
@@ -60,6 +86,17 @@ double offset_of(const GroundState& ground, const SurfacePair& surfaces, const A
 int cause_of(const VolumeChange& change, int zone) {
   if (zone < 0) return 0;
   return change.zones[static_cast<std::size_t>(zone)].kind == ZoneKind::other ? 2 : 1;
+}
+
+/// Ground between the points of a scan is as high as theirs.
+void fill_between_points(SeenGround& seen) {
+  const HeightMap& map = seen.surface;
+  const Eigen::ArrayXXd filled =
+      resampled(map, map.extent(), map.cell_size, between_points).z.block(0, 0, map.z.rows(),
+                                                                         map.z.cols());
+  const Eigen::ArrayXXd own = seen.deviation;
+  seen.deviation = (map.z.isNaN() && !filled.isNaN()).select(filled_sd, own);
+  seen.surface.z = (map.z.isNaN() && seen.obstacles.isNaN()).select(filled, map.z);
 }
 
 /// The survey after a dig, in the heights of the known ground.
@@ -90,10 +127,23 @@ SeenGround seen_after(const SurfacePair& surfaces, const VolumeChange& change,
     if (rise > in_the_way) seen.obstacles(at.row, at.col) = height;
     height = std::nan("");
   });
-  if (known.swept.size() > 0) {
-    constexpr double most = 0.5;  // of a cell, that counts as swept
-    seen.swept = (known.cover > most).select(known.swept + offset, std::nan(""));
+  if (known.cut.size() > 0) {
+    const Eigen::ArrayXXd left = before.z - known.loose - known.cut + offset;
+    seen.swept = (known.cut > 0.0).select(left, std::nan(""));
   }
+  fill_between_points(seen);
+  return seen;
+}
+
+/// The ground before as the scan before shows it, where it was not known.
+SeenGround seen_before(const GroundState& ground, const Surface& before, double offset) {
+  SeenGround seen;
+  seen.surface = before.height;
+  const Eigen::ArrayXXd known =
+      layer_on(before.height, ground.terrain.bank, ground.terrain.bank.z);
+  seen.surface.z = known.isNaN().select(before.height.z + offset, std::nan(""));
+  if (before.variance.size() > 0) seen.deviation = before.variance.sqrt();
+  seen.changed.setZero(before.height.z.rows(), before.height.z.cols());
   return seen;
 }
 
@@ -152,20 +202,20 @@ KnownGround known_ground_on(const HeightMap& grid, const GroundState& ground,
   return known;
 }
 
-void add_swept_floor(const DigPath& path, const Machine& machine, const HeightMap& grid,
-                     KnownGround& known) {
-  const double half = 0.5 * machine.bucket.width_outside;
-  known.swept.setConstant(grid.z.rows(), grid.z.cols(), std::nan(""));
-  known.cover.setZero(grid.z.rows(), grid.z.cols());
-  for (Eigen::Index col = 0; col < grid.z.cols(); ++col) {
-    const ColumnFloor floor = column_floor(path, grid, col);
+void add_cut(const DigPath& path, const Machine& machine, const HeightMap& before,
+             KnownGround& known) {
+  const RowsUnder rows(before, 0.5 * machine.bucket.width_outside);
+  known.cut.setZero(before.z.rows(), before.z.cols());
+  known.cover.setZero(before.z.rows(), before.z.cols());
+  for (Eigen::Index col = 0; col < before.z.cols(); ++col) {
+    const ColumnFloor floor = column_floor(path, before, col);
     if (!(floor.share > 0.0)) continue;
-    for (Eigen::Index row = 0; row < grid.z.rows(); ++row) {
-      const double low = grid.y(row) - 0.5 * grid.cell_size;
-      const double under = std::min(half, low + grid.cell_size) - std::max(-half, low);
-      if (!(under > 0.0)) continue;
-      known.swept(row, col) = floor.height;
-      known.cover(row, col) = std::min(1.0, floor.share * under / grid.cell_size);
+    for (Eigen::Index row = rows.first; row < rows.end; ++row) {
+      const Eigen::Index inside = rows.inside(row);
+      const double cut =
+          before.z(inside, col) - known.loose(inside, col) - floor.height;
+      known.cover(row, col) = floor.share * rows.cover(row);
+      if (cut > 0.0) known.cut(row, col) = known.cover(row, col) * cut;
     }
   }
 }
@@ -188,7 +238,9 @@ GroundState ground_after(const DensityOptions& options, const SurfacePair& surfa
   seen.time = options.scan_time;
   std::optional<double> loose;
   if (options.soil.kind) loose = options.soil.kind->void_ratio_loose;
-  return updated_ground(*options.ground, seen, loose);
+  SeenGround before = seen_before(*options.ground, surfaces.before, offset);
+  before.time = options.scan_time;
+  return updated_ground(updated_ground(*options.ground, before), seen, loose);
 }
 
 }  // namespace excavplan

@@ -32,9 +32,10 @@ void leave_out_obstacles(const GroundState& ground, Surface& before);
 /// Loose soil on the grid of a map. @param soil  whose loose state dug soil takes; null: unknown
 KnownGround known_ground_on(const HeightMap& grid, const GroundState& ground, const SoilKind* soil);
 
-/// Adds the floor of a path that was dug.
-void add_swept_floor(const DigPath& path, const Machine& machine, const HeightMap& grid,
-                     KnownGround& known);
+/// Adds what a path cut of the bank. A cell at the edge of the bucket shows the mean of what was cut
+/// and what stands beside: under the bucket its bank is that of the cell inside.
+void add_cut(const DigPath& path, const Machine& machine, const HeightMap& before,
+             KnownGround& known);
 
 /// Soil that fell back in known ground, with the error of the path.
 /// @return nothing where the cut has no bank

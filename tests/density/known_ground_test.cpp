@@ -105,6 +105,37 @@ class SurveyedSeries {
     Answer answer{*dig, estimate_density(scans, density_law_of(series_.soil()), options),
                   settings_.density_percent};
     known_ = series_.in_site(*answer.estimate.ground_after);
+    if (std::getenv("DEBUG_BANK")) {
+      const HeightMap truth = series_.ground().bank;
+      const GroundState now = series_.in_frame(known_);
+      double in = 0.0, near = 0.0, far = 0.0;
+      for (Eigen::Index r = 0; r < now.terrain.bank.z.rows(); ++r)
+        for (Eigen::Index c = 0; c < now.terrain.bank.z.cols(); ++c) {
+          const double x = now.terrain.bank.x(c), y = now.terrain.bank.y(r);
+          const double off = (now.terrain.bank.z(r, c) - height_at(truth, x, y)) * 0.0025;
+          if (std::isnan(off)) continue;
+          const bool strip = x > 3.0 && x < 7.2;
+          if (strip && std::abs(y) < 0.45) in += off;
+          else if (strip && std::abs(y) < 1.2) near += off;
+          else far += off;
+        }
+      if (std::getenv("DUMP")) {
+        std::map<int, double> by_col, by_row;
+        for (Eigen::Index r = 0; r < now.terrain.bank.z.rows(); ++r)
+          for (Eigen::Index c = 0; c < now.terrain.bank.z.cols(); ++c) {
+            const double x = now.terrain.bank.x(c), y = now.terrain.bank.y(r);
+            const double off = (now.terrain.bank.z(r, c) - height_at(truth, x, y)) * 0.0025;
+            if (std::isnan(off) || x < 3.0 || x > 7.2 || std::abs(y) > 0.6) continue;
+            by_col[static_cast<int>(std::floor(x / 0.05))] += off;
+            by_row[static_cast<int>(std::floor(y / 0.05))] += off;
+          }
+        for (auto& [c, v] : by_col) std::cout << "c" << 0.05 * c << ":" << std::round(1e5 * v) << " ";
+        std::cout << "\n";
+        for (auto& [c, v] : by_row) std::cout << "r" << 0.05 * c << ":" << std::round(1e5 * v) << " ";
+        std::cout << "\n";
+      }
+      std::cout << "   bank too high: in " << in << " near " << near << " far " << far << " half " << 0.5 * series_.machine().bucket.width_outside << "\n";
+    }
     return answer;
   }
 

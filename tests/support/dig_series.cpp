@@ -102,7 +102,8 @@ std::optional<DigPath> DigSeries::path_for_next() {
 }
 
 std::optional<SeriesDig> DigSeries::dig() {
-  constexpr int tries = 6;
+  constexpr int tries = 12;
+  constexpr double least_payload = 0.1;  // [m^3]: nobody digs for less
   const HeightMapSimulator simulator(machine_, soil_, settings_.density_percent);
   const double across = settings_.layout == Layout::behind ? 2.5 : 3.2;
   for (int i = 0; i < tries; ++i) {
@@ -115,7 +116,7 @@ std::optional<SeriesDig> DigSeries::dig() {
     if (settings_.heap_in_sight) options.dump_at = dug.dump_at;
     const Terrain before = ground();
     const DigResult result = simulator.dig(before, *path, options);
-    if (result.stall) continue;
+    if (result.stall || result.payload_volume < least_payload) continue;
     apply(result.patch, site_);
     dug.loose_before = volume_of(before.loose, settings_.cell);
     dug.bank_cut = volume_of(before.bank.z - site_.bank.z, settings_.cell);

@@ -21,7 +21,7 @@ struct SeenGround {
   /// 1 where a dig changed the ground, 2 where something else did, 0 where nothing did, as large as
   /// the surface. Empty: what differs by more than the errors explain was changed by something else.
   Eigen::ArrayXXi changed = {};
-  Eigen::ArrayXXd swept = {};      ///< floor that the bucket swept [m]; NaN elsewhere; empty: not told
+  Eigen::ArrayXXd swept = {};      ///< top of the bank that a bucket left [m]; NaN elsewhere; empty: not told
   Eigen::ArrayXXd obstacles = {};  ///< tops of what is no soil [m]; NaN elsewhere; empty: none
   double time = 0.0;               ///< since 1970-01-01 UTC [s]
   /// Deviation that neighbouring heights of a survey share: that of the mean of many surveys does
@@ -36,9 +36,10 @@ inline constexpr double reopened_sd = 0.05;
 /// The ground after a survey, on the grid of the state.
 ///
 /// A cell that did not change is the mean of least variance of what was known and what was seen, its
-/// loose soil as thick as before. In one that did, the bank is the lowest of what it was, the floor
-/// that was swept and the surface seen; what lies on it is loose. A cell that was never seen is
-/// bank. One that was not seen now stays as it is, with its time. Under what stands on the ground
+/// loose soil as thick as before. In one that did, the bank is the lowest of what it was, what
+/// the bucket left of it and the surface seen; what lies on it is loose. A cell that was never seen is
+/// bank. One that was not seen now stays as it is, with its time; where the
+/// bucket swept it is left as by the bucket, with a deviation of reopened_sd at least. Under what stands on the ground
 /// the layers stay and its top is noted. A cell that something else changed has a deviation of
 /// reopened_sd at least.
 ///

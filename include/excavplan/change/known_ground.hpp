@@ -6,7 +6,7 @@
 
 /// @file
 /// What is known of the ground before a dig beside its surface, for measure_change(): its loose soil
-/// and the floor that the bucket swept (docs/methods.md#known-ground).
+/// and what the bucket cut (docs/methods.md#known-ground).
 
 namespace excavplan {
 
@@ -18,8 +18,8 @@ struct KnownGround {
   /// What loose soil gains when it is dug again, as a share of its volume: it was compacted since it
   /// was dug. Empty: nothing.
   Eigen::ArrayXXd swelling;
-  Eigen::ArrayXXd swept;  ///< floor that the bucket swept [m]; NaN where it did not, empty: not told
-  Eigen::ArrayXXd cover;  ///< share of each cell under the bucket, as large as `swept`
+  Eigen::ArrayXXd cut;    ///< bank that the bucket cut [m], >= 0; empty: its path is not told
+  Eigen::ArrayXXd cover;  ///< share of each cell that it swept, as large as `cut`
 };
 
 /// What was cut, by the surfaces and the known ground [m^3].
