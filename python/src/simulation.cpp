@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/calibration/calibration.hpp>
+#include <excavplan/ground/ascii_grid.hpp>
+#include <excavplan/ground/ground_state.hpp>
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/results/result_json.hpp>
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/soil/ground_in_soil.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
 #include "simulators.hpp"
 #include "texts.hpp"
@@ -22,11 +26,75 @@ using py::arg;
 
 // ---- ground -------------------------------------------------------------------------------------
 
-Terrain made_terrain(const HeightMap& bank, const std::optional<ArrayLike>& loose) {
+void take(const char* what, const std::optional<ArrayLike>& from, Eigen::ArrayXXd& to) {
+  if (from) to = table_of(what, *from);
+}
+
+Terrain made_terrain(const HeightMap& bank, const std::optional<ArrayLike>& loose,
+                     const std::optional<ArrayLike>& bank_void_ratio,
+                     const std::optional<ArrayLike>& loose_void_ratio,
+                     const std::optional<ArrayLike>& obstacles) {
   Terrain terrain = undisturbed(bank);
-  if (loose) terrain.loose = table_of("the loose soil", *loose);
-  terrain.surface();  // checks the sizes
+  take("the loose soil", loose, terrain.loose);
+  take("the void ratio of the bank", bank_void_ratio, terrain.bank_void_ratio);
+  take("the void ratio of the loose soil", loose_void_ratio, terrain.loose_void_ratio);
+  take("the obstacles", obstacles, terrain.obstacles);
+  terrain.highest();  // checks the sizes
   return terrain;
+}
+
+GroundState made_state(const Terrain& terrain, const std::optional<ArrayLike>& seen,
+                       const std::optional<ArrayLike>& deviation, const std::string& frame,
+                       const std::string& soil) {
+  GroundState state = {terrain, {}, {}, frame, soil};
+  take("the times when cells were seen", seen, state.seen);
+  take("the deviation of the surface", deviation, state.deviation);
+  require_ground_state(state, "state of the ground");
+  return state;
+}
+
+/// A state is taken for its terrain, which is refused where a dig meets what it does not tell.
+void bind_ground_state(py::module_& module, py::class_<GroundState>& state) {
+  state
+      .def(py::init(&made_state), arg("terrain"), arg("seen") = py::none(),
+           arg("deviation") = py::none(), arg("frame") = "", arg("soil") = "",
+           "seen: when each cell was last seen [s since 1970-01-01 UTC], NaN: never; deviation:\n"
+           "standard deviation of the surface [m], NaN: not known; frame: name of the site frame;\n"
+           "soil: name of the kind that the void ratios are of.")
+      .def_readonly("terrain", &GroundState::terrain, "Bank, loose soil, void ratios, obstacles.")
+      .def_property_readonly(
+          "seen", [](const GroundState& s) { return array(s.seen); },
+          "When each cell was last seen, shape (rows, columns) [s since 1970-01-01 UTC], NaN:\n"
+          "never; empty: not known.")
+      .def_property_readonly(
+          "deviation", [](const GroundState& s) { return array(s.deviation); },
+          "Standard deviation of the surface, likewise [m]; empty: not known.")
+      .def_readonly("frame", &GroundState::frame, "Name of the site frame.")
+      .def_readonly("soil", &GroundState::soil, "Name of the kind that void ratios are of.")
+      .def("terrain_to_dig", &terrain_to_dig, arg("soil"), arg("density_percent"),
+           "The terrain with the void ratios that the state does not tell: those of this density\n"
+           "for the bank, the loosest for loose soil.")
+      .def("after_dig", &after_dig, arg("after"),
+           "The state with the terrain that a dig leaves, on the same grid.");
+  py::implicitly_convertible<GroundState, Terrain>();
+  module.def(
+      "load_ground",
+      [](const File& file, const std::optional<SoilKind>& soil) {
+        return call([&] { return soil ? load_ground(file.path, *soil) : load_ground(file.path); });
+      },
+      arg("file"), arg("soil") = py::none(),
+      "Reads a file of save_ground(); with a soil also a JSON that names ESRI ASCII grids.");
+  module.def(
+      "save_ground",
+      [](const File& file, const GroundState& known) {
+        call([&] { save_ground(file.path, known); });
+      },
+      arg("file"), arg("state"),
+      "Writes a state whole or not at all, as a GeoTIFF; every number comes back as it was.");
+  module.def(
+      "read_ascii_grid",
+      [](const File& file) { return call([&] { return read_ascii_grid(file.path); }); },
+      arg("file"), "Reads an ESRI ASCII grid; NODATA is NaN.");
 }
 
 TerrainPatch made_patch(Eigen::Index row, Eigen::Index col, const ArrayLike& bank,
@@ -39,20 +107,33 @@ TerrainPatch made_patch(Eigen::Index row, Eigen::Index col, const ArrayLike& ban
 }
 
 void bind_terrain(py::module_& module) {
+  py::class_<GroundState> state(module, "GroundState",
+                                "What is known of the ground, carried from dig to dig.");
   py::class_<Terrain>(module, "Terrain", "Ground in two layers on one grid.")
       .def(py::init(&made_terrain), arg("bank"), arg("loose") = py::none(),
+           arg("bank_void_ratio") = py::none(), arg("loose_void_ratio") = py::none(),
+           arg("obstacles") = py::none(),
            "bank: top of the undisturbed soil, NaN where unknown; loose: thickness of the loose\n"
-           "soil on it, shape (rows, columns) [m], else none.")
+           "soil on it, shape (rows, columns) [m], else none; void ratios of both, else those of\n"
+           "the simulator's density and of loose soil; obstacles: tops of what is no soil [m].")
+      .def(py::init([](const GroundState& known) { return known.terrain; }), arg("state"))
       .def_readonly("bank", &Terrain::bank, "Top of the undisturbed soil.")
       .def_property_readonly(
           "loose", [](const Terrain& t) { return array(t.loose); },
           "Thickness of the loose soil, shape (rows, columns) [m].")
+      .def_property_readonly(
+          "bank_void_ratio", [](const Terrain& t) { return array(t.bank_void_ratio); },
+          "Of the undisturbed soil, shape (rows, columns) [-]; empty: of the simulator's density.")
+      .def_property_readonly(
+          "loose_void_ratio", [](const Terrain& t) { return array(t.loose_void_ratio); },
+          "Of the loose soil, likewise; empty: void_ratio_loose of the soil.")
       .def_property_readonly(
           "obstacles", [](const Terrain& t) { return array(t.obstacles); },
           "Top of what stands on the ground, NaN where nothing does, shape (rows, columns) [m];\n"
           "empty: nothing anywhere.")
       .def("surface", &Terrain::surface, "bank + loose.");
   py::implicitly_convertible<HeightMap, Terrain>();
+  bind_ground_state(module, state);
   py::class_<TerrainPatch>(module, "TerrainPatch", "A block of a terrain's cells in a new state.")
       .def(py::init<>(), "Of no cells.")
       .def(py::init(&made_patch), arg("row"), arg("col"), arg("bank"), arg("loose"),

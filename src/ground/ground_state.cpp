@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <excavplan/base/ceilings.hpp>
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
@@ -189,10 +190,10 @@ void require_bytes(const InputFile& file, std::uint64_t bytes) {
 /// The layers that a file has, as large as it says and not yet read.
 void make_layers(const InputFile& file, const GeotiffSummary& summary, GroundState& state) {
   const std::uint64_t cells = std::uint64_t{summary.rows} * summary.cols;
-  if (cells == 0 || cells > file.size() / 8) {
+  if (cells == 0 || cells > file.size() / 8 || static_cast<double>(cells) > most_cells) {
     file.refuse("is said to have " + std::to_string(summary.rows) + " x " +
                 std::to_string(summary.cols) + " cells in " + std::to_string(file.size()) +
-                " bytes: it is cut off or damaged");
+                " bytes; it must have 1 .. " + plain_number(most_cells) + " and room for them");
   }
   std::size_t band = 0;
   for (const StateLayer& layer : layers()) {
@@ -251,6 +252,8 @@ std::string seal_of(const GroundState& state) {
 
 void require_ground_state(const GroundState& state, const char* what) {
   require_grid(state.terrain.bank, what);
+  require_in(std::string(what) + ": number of cells",
+             static_cast<double>(state.terrain.bank.z.size()), 1.0, most_cells);
   for (const StateLayer& layer : layers()) {
     if (const auto fault = fault_of_layer(layer, state)) refuse(std::string(what) + ": " + *fault);
   }

@@ -91,18 +91,20 @@ std::optional<double> bank_density_percent(const Terrain& terrain, const SoilKin
                                            const Rectangle& where) {
   require_soil(soil);
   const Eigen::ArrayXXd& ratio = terrain.bank_void_ratio;
-  double sum = 0.0;
+  double first = 0.0;
+  double above = 0.0;  // what the others have more, so that even ground has its own number
   int cells = 0;
   for_each_cell(ratio, [&](Cell cell) {
     const bool is_there = where.contains(terrain.bank.x(cell.col), terrain.bank.y(cell.row)) &&
                           std::isfinite(terrain.bank.z(cell.row, cell.col));
     if (!is_there || std::isnan(ratio(cell.row, cell.col))) return;
-    sum += ratio(cell.row, cell.col);
+    if (cells == 0) first = ratio(cell.row, cell.col);
+    above += ratio(cell.row, cell.col) - first;
     ++cells;
   });
   if (cells == 0) return std::nullopt;
   const double range = soil.void_ratio_max - soil.void_ratio_min;
-  return std::clamp(100.0 * (soil.void_ratio_max - sum / cells) / range, 0.0, 100.0);
+  return std::clamp(100.0 * (soil.void_ratio_max - first - above / cells) / range, 0.0, 100.0);
 }
 
 }  // namespace excavplan

@@ -358,6 +358,41 @@ BadFiles bad_yaml_files(const string& format) {
   return files;
 }
 
+// ---- Grids --------------------------------------------------------------------------------------
+
+BadFiles bad_grids() {
+  BadFiles files;
+  const string valid = valid_files("ascii_grid").front();
+  add_spoiled_text(files, valid, true);
+  const auto add = [&](const string& name, const string& from, const string& to,
+                       Expected expected = refused) {
+    files.push_back({name, expected, replaced(valid, from, to)});
+  };
+  for (const char* key : {"ncols", "nrows", "xllcorner", "yllcorner", "cellsize"}) {
+    add(string("no ") + key, string(key), "nodata");
+    add(string("twice ") + key, "NODATA_value -1", string(key) + " 1");
+  }
+  for (const char* count : {"0", "-3", "2.5", "1e9", "1e300", "nan", "x", ""}) {
+    add("columns " + string(count), "ncols 3", "ncols " + string(count));
+    add("cells of " + string(count), "cellsize 0.5", "cellsize " + string(count),
+        count == string("2.5") ? either : refused);
+  }
+  for (const char* value :
+       {"inf", "-inf", "1e999", "1e9", "0x10", "1,5", "--1", "1e", "*", "1;2"}) {
+    add("a value is " + string(value), "12.5", value);
+  }
+  add("a value too few", "12.5", "");
+  add("a value too many", "12.5", "1 2");
+  add("corner and centre", "NODATA_value -1", "xllcenter 1");
+  add("far away", "1.5", "1e10");
+  add("keys in capitals", "ncols", "NCOLS", same);
+  add("on one line", "0.25\n", "0.25 ", same);
+  add("a plus", "12.5", "+12.5", same);
+  add("more digits", "12.5", "12.50", same);
+  add("NODATA is a number", "12.5", "nan", either);
+  return files;
+}
+
 // ---- Settings -----------------------------------------------------------------------------------
 
 BadFiles bad_settings_files() {
@@ -431,7 +466,7 @@ BadFiles bad_settings_files() {
 BadFiles bad_files(const string& format) {
   static const std::set<string> json = {"machine",      "soil",       "law",        "library",
                                         "entry",        "checkpoint", "trajectory", "path_from",
-                                        "density_from", "intrinsics", "frame"};
+                                        "density_from", "intrinsics", "frame",      "plain_ground"};
   static const std::set<string> tables = {"table", "samples", "log", "known_points"};
   static const std::set<string> yaml = {"yaml", "intrinsics", "frame"};
   BadFiles files;
@@ -446,6 +481,7 @@ BadFiles bad_files(const string& format) {
   if (tables.count(format) != 0) add(bad_tables(format));
   if (yaml.count(format) != 0) add(bad_yaml_files(format));
   if (format == "settings") add(bad_settings_files());
+  if (format == "ascii_grid") add(bad_grids());
   if (files.empty()) add(bad_binary_files(format));
   add(things_that_are_no_files());
   for (BadFile& file : files) {
@@ -466,6 +502,9 @@ Tolerance tolerance_of(const string& format) {
                                                    {"trajectory", {Flips::one_leaf, Cuts::none}},
                                                    {"path_from", {Flips::one_leaf, Cuts::none}},
                                                    {"density_from", {Flips::one_leaf, Cuts::none}},
+                                                   {"ground", {Flips::none, Cuts::none}},
+                                                   {"ascii_grid", {Flips::any, Cuts::last}},
+                                                   {"plain_ground", {Flips::one_leaf, Cuts::none}},
                                                    {"library", {Flips::none, Cuts::none}},
                                                    {"entry", {Flips::none, Cuts::none}},
                                                    {"checkpoint", {Flips::none, Cuts::none}},

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/ground/ground_state.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/planning/path_library.hpp>
 
@@ -74,6 +76,24 @@ std::string valid_checkpoint() {
   std::remove(options.checkpoint.c_str());
   return text;
 }
+
+std::string valid_ground() {
+  GroundState state;
+  state.terrain = undisturbed(flat_ground({1.5, -0.25, 2.0, 0.0}, 0.25, 0.125));
+  state.terrain.bank.z(0, 1) = std::nan("");
+  state.seen = 1764187638.5 + state.terrain.bank.z;
+  state.frame = "quarry";
+  const std::string file = std::filesystem::temp_directory_path() / "excavplan-valid-ground.tif";
+  save_ground(file, state);
+  std::string bytes = content_of_file(file);
+  std::remove(file.c_str());
+  return bytes;
+}
+
+constexpr const char* plain_ground =
+    R"({"bank": "bank.asc", "loose": "loose.asc", "bank_density_percent": "dense.asc",
+ "frame": "quarry", "cell_m": 0.25
+})";
 
 std::string valid_trajectory() {
   Trajectory trajectory{"zx120", {}};
@@ -146,6 +166,13 @@ const std::map<std::string, Maker>& makers() {
        [] {
          return png_of(4, {500, 1000, 0, 2000, 3000, 65535, 700, 800});
        }},
+      {"ground", valid_ground},
+      {"ascii_grid",
+       [] {
+         return "ncols 3\nnrows 2\nxllcorner 1.5\nyllcorner -2\ncellsize 0.5\nNODATA_value -1\n"
+                "0.5 -1 0.25\n-0.75 12.5 1e-3\n";
+       }},
+      {"plain_ground", [] { return plain_ground; }},
       {"machine", [] { return shipped("machines/zx120.json"); }},
       {"urdf", [] { return urdf_of(zx120_joints()); }},
       {"soil", [] { return shipped("soils/loam.json"); }},

@@ -1,7 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/warning.hpp>
+#include <excavplan/ground/ascii_grid.hpp>
+#include <excavplan/ground/plain_ground.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/machine/machine_file.hpp>
 #include <excavplan/machine/trajectory.hpp>
@@ -117,10 +123,55 @@ std::string read_table(const std::string& path) {
   return said.text();
 }
 
+void say(Said& said, const HeightMap& map) {
+  said.all("origin", map.origin).add("cell", map.cell_size);
+  said.add("rows", static_cast<double>(map.z.rows())).all("z", map.z.reshaped());
+}
+
+std::string read_ground(const std::string& path) {
+  const GroundState state = load_ground(path);
+  const Terrain& terrain = state.terrain;
+  Said said;
+  said.add("frame", state.frame).add("soil", state.soil);
+  say(said, terrain.bank);
+  for (const Eigen::ArrayXXd* layer :
+       {&terrain.loose, &terrain.bank_void_ratio, &terrain.loose_void_ratio, &terrain.obstacles,
+        &state.seen, &state.deviation}) {
+    said.add("size", static_cast<double>(layer->size())).all("value", layer->reshaped());
+  }
+  return said.text();
+}
+
+std::string read_grid(const std::string& path) {
+  Said said;
+  say(said, read_ascii_grid(path));
+  return said.text();
+}
+
+/// With grids of the names that the valid file has in the folder.
+std::string read_plain_ground(const std::string& path) {
+  constexpr const char* head = "ncols 2\nnrows 1\nxllcorner 1\nyllcorner 2\ncellsize 0.5\n";
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  for (const auto& [name, cells] :
+       {std::pair("bank.asc", "0.5 -9999"), {"loose.asc", "0.25 0"}, {"dense.asc", "40 60"}}) {
+    std::ofstream(folder / name) << head << cells << '\n';
+  }
+  const PlainGround plain = load_plain_ground(path);
+  Said said;
+  say(said, plain.ground.terrain.bank);
+  return said.add("frame", plain.ground.frame)
+      .all("loose", plain.ground.terrain.loose.reshaped())
+      .all("density", plain.bank_density_percent.reshaped())
+      .text();
+}
+
 }  // namespace
 
 std::vector<FileReader> planning_readers() {
   return {{"machine", read_machine},
+          {"ground", read_ground},
+          {"ascii_grid", read_grid},
+          {"plain_ground", read_plain_ground},
           {"urdf", read_urdf},
           {"soil", read_soil},
           {"law", read_law},

@@ -16,6 +16,38 @@ MACHINE = ex.load_machine("zx120")
 LOAM = ex.load_soil("loam")
 
 
+class GroundFiles(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.file = os.path.join(self.folder.name, "ground.tif")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_a_state_comes_back(self):
+        bank = ex.HeightMap([[0.1, math.nan], [-0.3, 1 / 3]], (1.5, -0.5), 0.25)
+        terrain = ex.Terrain(bank, loose=[[0, 0], [0.2, 0]], bank_void_ratio=[[0.7, 0.8], [0.9, 1]])
+        state = ex.GroundState(terrain, seen=[[1.5e9, math.nan], [0, 2]], frame="quarry", soil="loam")
+        ex.save_ground(pathlib.Path(self.file), state)
+        back = ex.load_ground(self.file)
+        self.assertEqual((back.frame, back.soil), ("quarry", "loam"))
+        self.assertEqual(back.terrain.bank.origin, (1.5, -0.5))
+        self.assertEqual(memoryview(back.terrain.bank.z).tolist()[1], [-0.3, 1 / 3])
+        self.assertEqual(memoryview(back.terrain.bank_void_ratio).tolist(), [[0.7, 0.8], [0.9, 1.0]])
+        self.assertTrue(math.isnan(memoryview(back.seen).tolist()[0][1]))
+        with self.assertRaises(ex.Error):
+            ex.load_ground(self.file, ex.load_soil("sand"))
+
+    def test_a_state_is_ground_to_dig(self):
+        dug = ex.simulate_dig(MACHINE, LOAM, 40)
+        ex.save_ground(self.file, ex.GroundState(dug.before).after_dig(dug.after))
+        again = ex.simulate_dig(MACHINE, LOAM, 40, terrain=ex.load_ground(self.file, LOAM))
+        same = ex.simulate_dig(MACHINE, LOAM, 40, terrain=dug.after)
+        self.assertEqual(again.dig.payload_mass, same.dig.payload_mass)
+        self.assertLess(again.dig.payload_mass, dug.dig.payload_mass)
+        self.assertIsNotNone(ex.plan_dig(MACHINE, LOAM, 40, ex.load_ground(self.file)).dig)
+
+
 class Machines(unittest.TestCase):
     def test_kinematics_are_inverse(self):
         joints = (-0.4, 1.8, 0.6)

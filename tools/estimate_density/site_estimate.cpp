@@ -8,6 +8,7 @@
 #include <excavplan/results/stated_dig.hpp>
 
 #include "base/text.hpp"
+#include "inputs/named_kinds.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -37,29 +38,6 @@ nlohmann::ordered_json ground_json(const GroundState& ground) {
           {"loose_m3", area * known.select(terrain.loose, 0.0).sum()}};
 }
 
-}  // namespace
-
-void declare_site(Arguments& arguments, SiteEstimateInputs& inputs) {
-  declare_site_folder(arguments, inputs.at,
-                      "remember ground and density in this folder, which is made if it is not "
-                      "there: BEFORE is then not needed after the first scan; alone: show what "
-                      "it holds");
-  const Arguments::Use used = {[&inputs] { return inputs.is_used(); }, "it is of --site"};
-  arguments.only_if(used, [&] {
-    arguments.file("dug", inputs.dug,
-                   "the dig between the scans: a result of plan-path or simulate-dig --json, "
-                   "for its path, start, foretold work and stall");
-    arguments.flag("no-dig", inputs.no_dig, "nothing was dug: the scan shows the ground alone");
-    arguments.flag("stalled", inputs.stalled, "the dig was given up: the ground is strong");
-    arguments.flag("no-update", inputs.no_update, "leave the site as it is");
-    arguments.flag("undo", inputs.undo, "take the last update of the site back; without scans");
-    arguments.option("time", inputs.time, Quantity::time,
-                     "when AFTER was scanned, since 1970-01-01 UTC (default: now)");
-  });
-  arguments.exclude("undo", {"no-update", "dug", "no-dig", "stalled", "time"});
-  arguments.exclude("no-dig", {"dug", "stalled"});
-}
-
 void add_told_dig(const SiteEstimateInputs& inputs, const Machine& machine, SiteEvent& event) {
   event.base = base_of(inputs.at);
   event.dug = !inputs.no_dig;
@@ -73,15 +51,6 @@ void add_told_dig(const SiteEstimateInputs& inputs, const Machine& machine, Site
   if (told.is_plan && told.joint_work > 0.0) {
     event.foretold = ForetoldDig{told.density_percent, told.joint_work};
   }
-}
-
-SiteAccess access_of(const SiteEstimateInputs& inputs) {
-  return inputs.no_update ? SiteAccess::read : SiteAccess::write;
-}
-
-SiteUpdate told_site(const SiteEstimateInputs& inputs, excavplan::Site& site,
-                     const SiteEvent& event) {
-  return inputs.no_update ? site.look(event) : site.update(event);
 }
 
 void add_site(const excavplan::Site& site, const SiteUpdate& update, Outcome& outcome) {
@@ -122,6 +91,55 @@ Outcome site_outcome(const SiteEstimateInputs& inputs) {
   outcome.lines.push_back("ground       " + readable(ground["seen_m2"].get<double>()) +
                           " m2 seen, " + readable(ground["loose_m3"].get<double>()) +
                           " m3 of loose soil");
+  return outcome;
+}
+
+void check_site(const EstimateInputs& inputs) {
+  const auto refuse_if = [](bool is_given, const char* what) {
+    if (is_given) usage_error(std::string("--site excludes ") + what);
+  };
+  refuse_if(inputs.method.uses("paper"), "--method paper: the ground is known by its surface");
+  refuse_if(inputs.dump_before || inputs.dump_after,
+            "--dump-before and --dump-after: a site is one scene");
+  refuse_if(inputs.second.prior.has_value(), "--prior: the site knows the digs before");
+  refuse_if(inputs.soil.soil == "unknown", "--soil unknown: a site is of one soil");
+}
+
+}  // namespace
+
+Outcome work_on_site(const EstimateInputs& inputs) {
+  check_site(inputs);
+  if (!inputs.before && !inputs.after) return site_outcome(inputs.site);
+  if (inputs.site.undo) usage_error("--undo takes no scans");
+  ScanReport report;
+  SiteEvent event;
+  if (inputs.after) {
+    ScanPair pair = placed_pair(*inputs.before, *inputs.after, inputs.frames, report);
+    event.before = std::move(pair.before);
+    event.scan = std::move(pair.after);
+  } else {
+    event.scan = placed_scan(*inputs.before, inputs.frames, report);
+  }
+  KnownDig dig = known_dig(inputs);
+  if (!dig.options.soil.kind) usage_error("--site with a --law of an unknown soil needs --soil");
+  event.options = dig.options;
+  add_told_dig(inputs.site, dig.machine, event);
+  inputs.second.apply_to(dig.law, event.options);
+  const SiteSettings settings = {
+      *dig.options.soil.kind, dig.machine, dig.law, inputs.options.cell_size, {}};
+  excavplan::Site site(*inputs.site.at.folder, settings,
+                       inputs.site.no_update ? SiteAccess::read : SiteAccess::write);
+  const SiteUpdate update = naming_options(estimate_options, [&] {
+    return with_frame_hint("--after-frame transforms it into the frame of the site", [&] {
+      return inputs.site.no_update ? site.look(event) : site.update(event);
+    });
+  });
+  Outcome outcome;
+  if (update.estimate) {
+    outcome = shown_estimate(inputs, dig, *update.estimate, {event.scan.unit, report.in_counts});
+  }
+  add_site(site, update, outcome);
+  report.add_to(outcome);
   return outcome;
 }
 

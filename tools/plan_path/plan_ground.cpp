@@ -31,7 +31,8 @@ PlanGround ground_of_site(const PlanGroundInputs& inputs, const Machine& machine
         "tell the density");
   }
   const bool is_told = told.percent || told.file;
-  PlanGround ground = {{}, is_told ? density_of(told) : site->density_in_reach(), told, {}, {}, {}};
+  PlanGround ground = {{},  is_told ? density_of(told) : site->density_in_reach(), told, {}, {}, {},
+                       true};
   ground.site = site;
   GroundState known;
   known.terrain =
@@ -73,8 +74,9 @@ bool PlanGround::takes_density_under(const DigPlan& plan) {
 PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
                        const SoilKind& soil) {
   if (inputs.site.folder) return ground_of_site(inputs, machine, soil);
-  PlanGround ground = {{}, density_of(inputs.density), inputs.density, std::nullopt, {}, {}};
+  PlanGround ground = {{}, density_of(inputs.density), inputs.density, {}, {}, {}, false};
   ground.given = given_ground(inputs.state, machine, soil, ground.density.percent);
+  ground.is_known = ground.given || inputs.terrain.cloud;
   if (ground.given) {
     ground.terrain = ground.given->terrain;
     take_density_of_file(inputs, ground);
@@ -85,6 +87,17 @@ PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
   ground.terrain = std::move(site.ground);
   ground.warnings = std::move(site.warnings);
   return ground;
+}
+
+DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,
+                const PlanOptions& options) {
+  const auto planned = [&] {
+    return ground.is_known ? plan_dig(machine, soil, ground.density, ground.terrain, options)
+                           : plan_dig(machine, soil, ground.density, options);
+  };
+  DigPlan plan = planned();
+  if (ground.takes_density_under(plan)) plan = planned();
+  return plan;
 }
 
 MotionGround ground_to_move_on(const MotionInputs& motion, const PlanGroundInputs& inputs,

@@ -39,6 +39,10 @@ struct PlanGround {
   std::shared_ptr<const SiteToPlanOn> site = {};  ///< by --site; else null
   std::vector<Warning> warnings;
 
+  bool is_known = false;  ///< else it is taken to be level
+
+  /// Null unless it is known.
+  const Terrain* known() const { return is_known ? &terrain : nullptr; }
   /// Takes the density that the site believes in where a plan digs, if it differs from the one that
   /// was planned for by more than a point (ours). @return whether it does
   bool takes_density_under(const DigPlan& plan);
@@ -49,6 +53,10 @@ void check(const PlanGroundInputs& inputs);
 /// @throws Error as make_site(), density_of() and given_ground()
 PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
                        const SoilKind& soil);
+
+/// On a site the plan is made again where the density there is another (takes_density_under()).
+DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,
+                const PlanOptions& options);
 
 /// Ground that the motion must be clear of, and sets that on which the machine stands.
 /// @throws Error as motion_ground()

@@ -109,20 +109,12 @@ Outcome work(const Inputs& inputs, Console& console) {
   PlanGround on = plan_ground(inputs.on, machine, soil);
   PlanOptions options = options_of(inputs, machine, soil, console);
   const auto area = ground_to_move_on(inputs.motion, inputs.on, on, machine, options);
-  const Terrain* const known =
-      on.given || on.site || inputs.on.terrain.cloud ? &on.terrain : nullptr;
-  const auto planned = [&] {
-    return naming_options(search_option_names, [&] {
-      return known ? plan_dig(machine, soil, on.density, *known, options)
-                   : plan_dig(machine, soil, on.density, options);
-    });
-  };
-  DigPlan plan = planned();
-  if (on.takes_density_under(plan)) plan = planned();
+  DigPlan plan =
+      naming_options(search_option_names, [&] { return plan_on(on, machine, soil, options); });
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
-  outcome.warnings = plan_warnings(plan, on.density_from, known);
+  outcome.warnings = plan_warnings(plan, on.density_from, on.known());
   for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), on.warnings}) {
     outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
   }

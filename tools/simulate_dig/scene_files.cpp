@@ -8,6 +8,7 @@
 
 #include "base/files.hpp"
 #include "figures/dig_figures.hpp"
+#include "frame/tool.hpp"
 #include "inputs/dig_plots.hpp"
 #include "report/dig_report.hpp"
 
