@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/angles.hpp"
@@ -24,25 +25,6 @@ constexpr double bearing_settlement =
 
 constexpr double cone_half_angle = 15.0 * pi / 180.0;  // of the standard cone (ASAE S313)
 
-/// Mean pressure at rest on a vertical face down to this depth (Jaky 1944: K_0 = 1 - sin phi).
-double at_rest_pressure(const SoilState& soil, double depth) {
-  return 0.5 * (1.0 - std::sin(soil.friction_angle)) * soil.unit_weight * depth;
-}
-
-/// Friction and adhesion on steel under that pressure.
-double plate_friction(const SoilState& soil, double depth) {
-  return soil.adhesion + at_rest_pressure(soil, depth) * std::tan(soil.tool_friction_angle);
-}
-
-/// Bearing capacity of a strip footing (Prandtl, Reissner; N_gamma of Vesic 1973) [Pa].
-double bearing_capacity(const SoilState& soil, double depth, double width) {
-  const double tangent = std::tan(soil.friction_angle);
-  const double root = std::tan(0.25 * pi + 0.5 * soil.friction_angle);
-  const double n_q = std::exp(pi * tangent) * root * root;
-  return soil.cohesion * (n_q - 1.0) / tangent + soil.unit_weight * depth * n_q +
-         soil.unit_weight * width * (n_q + 1.0) * tangent;
-}
-
 /// Soil in the bucket is in its loosest state, with the cohesion that moist soil has there.
 SoilState dug_state(const SoilKind& soil) {
   const double density =
@@ -58,7 +40,7 @@ HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_
       density_percent(density_percent_),
       bank(bank_state(soil, density_percent)),
       loose(loose_state(soil)),
-      wedges(soil, bank) {
+      wedges(soil, bank, loose) {
   const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
   slopes.heap = std::tan(soil.angle_of_repose);
   const SoilState dug = dug_state(soil);
@@ -67,9 +49,17 @@ HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_
 
 // ---- Forces -------------------------------------------------------------------------------------
 
-struct BucketResistance::Attitude {
-  double floor;  ///< angle of the floor [rad]
-  double climb;  ///< angle of the motion above the horizontal [rad]
+/// Where the blade is in one stretch, and what it cuts there.
+struct BucketResistance::Place {
+  Vector2d tip;
+  Vector2d lip;  ///< the ground is cut up to here
+  Index col = 0;
+  Vector2d motion;
+  double floor = 0.0;  ///< angle of the floor [rad]
+  double slope = 0.0;  ///< of the surface ahead along the travel, as gravity sees it [rad]
+  CutSoil soil;        ///< the layers' states; their depths where they are taken at the tip
+
+  double climb() const { return std::atan2(motion.y(), -motion.x()); }  ///< of the motion [rad]
 };
 
 /// The soil in the bucket.
@@ -91,17 +81,27 @@ struct BucketResistance::SlidingFace {
 
 /// In the frame of the motion [N].
 struct BucketResistance::FaceForce {
-  double along = 0.0;   ///< against the motion
-  double across = 0.0;  ///< away from the surface
+  /// Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
+  /// climb, and the bucket shears off the soil above it instead.
+  double fade = 1.0;
+  double along = 0.0;    ///< against the motion
+  double across = 0.0;   ///< away from the surface
+  double on_face = 0.0;  ///< weight of the part of the wedge that lies over the face
   double borne_weight = 0.0;
-  double depth = 0.0;   ///< mean over the width [m]
-  double length = 0.0;  ///< of the wedge's top ahead of the lip [m]
+  double bank_depth = 0.0;   ///< mean over the width [m]
+  double loose_depth = 0.0;  ///< likewise
+  double length = 0.0;       ///< of the wedge's top ahead of the lip [m]
+
+  void push(double passive, double adhesion, const FaceTerms& t);
 };
 
-/// Soil above the tip in one row: depth of the uncut bank, thickness of the loose soil on it.
+/// Ground above the tip in one row, and what this dig has pushed up on it [m].
 struct BucketResistance::Strip {
   double bank = 0.0;
-  double loose = 0.0;
+  double loose = 0.0;  ///< that lay there before the dig
+  double pile = 0.0;
+
+  double depth() const { return bank + loose; }
 };
 
 double BucketResistance::floor_length() const {
@@ -109,27 +109,28 @@ double BucketResistance::floor_length() const {
   return (profile[1] - profile[0]).norm();
 }
 
-double BucketResistance::uncut_at(Index col) const {
+double BucketResistance::bank_at(Index col) const {
   return swath_.mean([&](Index row) { return ground_.before().bank.z(row, col); });
 }
 
 double BucketResistance::surface_at(Index col) const {
-  return uncut_at(col) + swath_.mean([&](Index row) { return ground_.loose(row, col); });
+  const Terrain& before = ground_.before();
+  return swath_.mean([&](Index row) { return before.bank.z(row, col) + before.loose(row, col); });
 }
 
 Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double fill) const {
-  const Vector2d motion = s.direction();
-  const double floor = s.at.phi3 + pi - model_.machine.beta();
-  const Vector2d tip = 0.5 * (s.from + s.to);
-  const Index col = swath_.column(tip.x());
+  Place place;
+  place.tip = 0.5 * (s.from + s.to);
+  place.lip = s.from;
+  place.col = swath_.column(place.tip.x());
+  place.motion = s.direction();
+  place.floor = s.at.phi3 + pi - model_.machine.beta();
+  const Vector2d up = model_.machine.up();
+  place.slope = surface_slope(place.col) - std::atan2(up.x(), up.y());
+  place.soil = soil_above(place.col, place.tip.y());
   // The penetration moves along the floor by definition: no wedge is pushed, the lip is driven in.
-  Resistance r;
-  if (s.phase == DigPhase::penetrate) {
-    r = drive_in(tip, col, floor, motion);
-  } else {
-    const double climb = std::atan2(motion.y(), -motion.x());
-    r = push_wedge(tip, col, {floor, climb}, fill_in(cavity, fill), motion);
-  }
+  Resistance r =
+      s.phase == DigPhase::penetrate ? drive_in(place) : push_wedge(place, fill_in(cavity, fill));
   press_heel(s, cavity, r);
   return r;
 }
@@ -139,59 +140,62 @@ BucketResistance::Fill BucketResistance::fill_in(const Cavity& cavity, double vo
   const Cavity::Packed packed = cavity.packed(volume);
   const double section = volume / model_.machine.bucket.width_inside;
   const double depth = section / floor_length();
-  return {volume * loose.unit_weight,
-          2.0 * section * at_rest_pressure(loose, depth) * std::tan(loose.tool_friction_angle),
-          packed.front, packed.centroid.y()};
+  return {
+      volume * loose.unit_weight,
+      section * at_rest(loose) * loose.unit_weight * depth * std::tan(loose.tool_friction_angle),
+      packed.front, packed.centroid.y()};
 }
 
 /// Lip and teeth against the cone index, friction on both sides of the floor and of the side
-/// plates.
-Resistance BucketResistance::drive_in(const Vector2d& tip, Index col, double floor,
-                                      const Vector2d& motion) const {
-  const double depth = surface_at(col) - tip.y();
+/// plates. What lies on the ground is part of it.
+Resistance BucketResistance::drive_in(const Place& place) const {
+  const double depth = surface_at(place.col) + pile_at(place) - place.tip.y();
   Resistance r;
   if (!(depth > 0.0)) return r;
-  const SoilState soil = mean_soil_at(col);
-  const double along = std::sin(floor) + std::tan(surface_slope(col)) * std::cos(floor);
+  CutSoil cut = place.soil;
+  cut.loose_depth = depth - cut.bank_depth;
+  const double along =
+      std::sin(place.floor) + std::tan(surface_slope(place.col)) * std::cos(place.floor);
   const double driven = depth / std::max(1e-3, along);
   const double buried = std::min(driven, floor_length());
-  const double plates =
-      2.0 * buried * model_.machine.bucket.width_outside + 4.0 * side_plate_area(depth, floor);
-  r.edge = cone_index(model_.soil, soil, depth) * penetrating_area(driven, depth, soil);
-  r.lip_force = -motion * (r.edge + plate_friction(soil, depth) * plates);
-  r.face_point = tip;
+  const double plates = 2.0 * buried * model_.machine.bucket.width_outside +
+                        4.0 * side_plate_area(depth, place.floor);
+  r.edge = driving_force(cut, driven);
+  r.lip_force = -place.motion * (r.edge + cut.plate_friction() * plates);
+  r.face_point = place.tip;
   return r;
 }
 
 /// Earthmoving equation per strip of the edge: the wedge slides up the floor, or up the soil packed
 /// on it if that is easier.
-Resistance BucketResistance::push_wedge(const Vector2d& tip, Index col, const Attitude& attitude,
-                                        const Fill& fill, const Vector2d& motion) const {
+Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) const {
   const double edge = model_.machine.bucket.edge_angle;
-  const double turn = std::clamp(attitude.climb, 0.0, 0.5 * pi);
   const auto face_at = [&](double angle, bool packed) {
-    return SlidingFace{angle, std::max({angle, angle + attitude.climb, edge}), packed};
+    return SlidingFace{angle, std::max({angle, angle + place.climb(), edge}), packed};
   };
-  SlidingFace face = face_at(attitude.floor, false);
-  FaceForce force = slide(face, tip, col, turn, fill);
+  SlidingFace face = face_at(place.floor, false);
+  FaceForce force = slide(face, place, fill);
   if (fill.front > 0.0) {
-    const SlidingFace packed = face_at(attitude.floor + fill.front, true);
-    if (const FaceForce other = slide(packed, tip, col, turn, fill); other.along < force.along) {
+    const SlidingFace packed = face_at(place.floor + fill.front, true);
+    if (const FaceForce other = slide(packed, place, fill); other.along < force.along) {
       face = packed;
       force = other;
     }
   }
-  const SoilState soil = mean_soil_at(col);
-  const double depth = force.depth;
+  CutSoil cut = place.soil;
+  cut.bank_depth = force.bank_depth;
+  cut.loose_depth = force.loose_depth;
+  const double depth = cut.depth();
+  const Vector2d& motion = place.motion;
   const Vector2d up(-motion.y(), motion.x());  // left of the motion, which is towards -x: down
   Resistance r;
-  r.edge = edge_force(depth, attitude.climb, soil);
+  r.edge = edge_force(cut, place.climb());
   r.lip_force = -motion * r.edge;
-  const double along = force.along + 2.0 * side_plate_area(depth, std::max(attitude.floor, edge)) *
-                                         plate_friction(soil, depth);
+  const double along = force.along + 2.0 * side_plate_area(depth, std::max(place.floor, edge)) *
+                                         cut.plate_friction();
   r.face_force = -motion * along + up * force.across;
   const double lever = std::min(depth / (3.0 * std::sin(face.rake)), floor_length());
-  r.face_point = tip + lever * Vector2d(std::cos(face.angle), std::sin(face.angle));
+  r.face_point = place.tip + lever * Vector2d(std::cos(face.angle), std::sin(face.angle));
   r.borne_weight = force.borne_weight;
   r.wedge_length = force.length;
   return r;
@@ -203,102 +207,186 @@ struct BucketResistance::FaceTerms {
       : soil(state),
         n(factors),
         adhesion(packed ? state.cohesion : state.adhesion),
-        sin_face(std::sin(n.rake + friction(packed))),
-        cos_face(std::cos(n.rake + friction(packed))),
-        cot_rake(1.0 / std::tan(n.rake)),
-        cot_failure(1.0 / std::tan(n.failure)),
-        tan_friction(std::tan(state.friction_angle)) {}
-
-  double friction(bool packed) const {
-    return packed ? soil.friction_angle : soil.tool_friction_angle;
-  }
+        friction(packed ? state.friction_angle : state.tool_friction_angle),
+        shear_at_rest(at_rest(state) * std::tan(state.friction_angle)) {}
 
   SoilState soil;
   EarthmovingFactors n;
   double adhesion;
-  double sin_face, cos_face, cot_rake, cot_failure, tan_friction;
+  double friction;       ///< on the face [rad]
+  double shear_at_rest;  ///< friction on a vertical plane per vertical stress, at rest [-]
 };
 
-BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Vector2d& tip,
-                                                    Index col, double turn,
+struct BucketResistance::Layers {
+  FaceTerms bank;
+  FaceTerms loose;
+};
+
+void BucketResistance::FaceForce::push(double passive, double adhesion, const FaceTerms& t) {
+  along += fade * (passive * t.n.sin_face + adhesion * t.n.cot_rake);
+  across += fade * (passive * t.n.cos_face - adhesion);
+}
+
+BucketResistance::FaceTerms BucketResistance::terms_of(const SoilState& soil,
+                                                       const SlidingFace& face,
+                                                       double slope) const {
+  return {soil, model_.wedges.at(face.rake, slope, soil, face.packed), face.packed};
+}
+
+/// Each layer is pushed by its own soil: the passive pressure in it depends on its strength and on
+/// the weight of what lies above.
+BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Place& place,
                                                     const Fill& fill) const {
-  const Vector2d up = model_.machine.up();
-  const double slope = surface_slope(col) - std::atan2(up.x(), up.y());  // as gravity sees it
-  // Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
-  // climb, and the bucket shears off the soil above it instead.
-  const double fade = std::cos(turn);
+  const Layers mean = {terms_of(place.soil.bank, face, place.slope),
+                       terms_of(place.soil.loose, face, place.slope)};
   FaceForce force;
-  double on_face = 0.0;  // weight of the part of the wedge that lies over the face
-  const auto push = [&](double passive, double adhesion, const FaceTerms& t) {
-    force.along += fade * (passive * t.sin_face + adhesion * t.cot_rake);
-    force.across += fade * (passive * t.cos_face - adhesion);
-  };
-  const auto terms_of = [&](const SoilState& soil) {
-    return FaceTerms(soil, model_.wedges.at(face.rake, slope, soil, face.packed), face.packed);
-  };
-  const FaceTerms mean = terms_of(mean_soil_at(col));
-  const bool even = ground_.bank_is_even();
-  for (Index i = 0; i < swath_.rows(); ++i) {
-    const Index row = swath_.first_row() + i;
-    const double width = swath_.cover(i) * ground_.cell_size();
-    const Strip strip = strip_at(row, col, tip.y());
-    if (strip.bank + strip.loose <= 0.0) continue;
-    const FaceTerms t = even ? mean : terms_of(ground_.bank_state(row, col));
-    const double loose = loose_on_wedge(row, col, strip, t);
-    push(width * passive_force(strip, loose, t), width * t.adhesion * strip.bank, t);
-    force.along += width * (1.0 - fade) * shearing_force(strip, fill.rise, t);
-    on_face += width * 0.5 * t.soil.unit_weight * strip.bank * strip.bank * t.cot_rake;
-    force.depth += width * strip.bank;
-  }
-  force.depth /= model_.machine.bucket.width_outside;
-  force.length = fade * force.depth * mean.cot_failure;
-  if (force.depth > 0.0) {
-    const SoilState& soil = mean.soil;
-    const CuttingWedge wedge{mean.n.rake, soil.friction_angle, mean.friction(face.packed), 0.0};
-    const SoilStrength strength = {soil.unit_weight, soil.cohesion, soil.adhesion};
-    const double sides = side_plane_force(wedge, mean.n, strength, force.depth);
-    push(sides * side_plane_share(wedge, mean.n), 0.0, mean);
-  }
+  force.fade = std::cos(std::clamp(place.climb(), 0.0, 0.5 * pi));
+  push_strips(face, place, mean, fill.rise, force);
+  const SideForces sides = side_forces(force, mean);
+  force.push(sides.bank, 0.0, mean.bank);
+  force.push(sides.loose, 0.0, mean.loose);
+  force.length = force.fade * (force.bank_depth * mean.bank.n.cot_failure +
+                               force.loose_depth * mean.loose.n.cot_failure);
   if (face.packed) return force;
   // The soil in the bucket slides with the wedge: together they are in equilibrium between the face
   // and the failure plane. What lies over the face is part of it.
-  const double pushed = std::max(0.0, fill.weight - on_face);
-  const double wall = fill.wall_friction * std::sin(mean.n.rake);
-  push(pushed * mean.n.Q + wall * mean.n.ca, wall, mean);
-  force.borne_weight = fade * (on_face + pushed);
+  const double pushed = std::max(0.0, fill.weight - force.on_face);
+  const double depth = force.bank_depth + force.loose_depth;
+  const double in_bank = depth > 0.0 ? force.bank_depth / depth : 0.0;
+  const auto push_fill = [&](double share, const FaceTerms& t) {
+    const double wall = fill.wall_friction * std::sin(t.n.rake);
+    force.push(share * (pushed * t.n.Q + wall * t.n.ca), share * wall, t);
+  };
+  push_fill(in_bank, mean.bank);
+  push_fill(1.0 - in_bank, mean.loose);
+  force.borne_weight = force.fade * (force.on_face + pushed);
   return force;
 }
 
-/// Of the wedge in one row on the face, per metre of width [N/m].
-/// @param loose  thickness of the loose soil on it [m]
-double BucketResistance::passive_force(const Strip& strip, double loose, const FaceTerms& t) const {
-  const double surcharge = model_.loose.unit_weight * loose;
+/// The wedge row by row, each with the soil of its own cell.
+/// @param rise  of the soil in the bucket above the lip [m]
+void BucketResistance::push_strips(const SlidingFace& face, const Place& place, const Layers& mean,
+                                   double rise, FaceForce& force) const {
+  const bool even = ground_.bank_is_even() && ground_.loose_is_even();
+  const FaceTerms dug = even ? mean.loose : terms_of(model_.loose, face, place.slope);
+  std::optional<Layers> own;
+  for (Index i = 0; i < swath_.rows(); ++i) {
+    const Index row = swath_.first_row() + i;
+    const double width = swath_.cover(i) * ground_.cell_size();
+    const Strip strip = strip_at(row, place);
+    if (strip.depth() + strip.pile <= 0.0) continue;
+    if (!even) {
+      own.emplace(Layers{terms_of(ground_.bank_state(row, place.col), face, place.slope),
+                         terms_of(ground_.lying_state(row, place.col), face, place.slope)});
+    }
+    const Layers& layers = even ? mean : *own;
+    const double pile = pile_on_wedge(row, place, strip, layers);
+    force.push(width * passive_of_bank(strip, pile, layers),
+               width * layers.bank.adhesion * strip.bank, layers.bank);
+    if (strip.loose > 0.0) {
+      force.push(width * passive_of_loose(strip, pile, layers.loose),
+                 width * layers.loose.adhesion * strip.loose, layers.loose);
+    }
+    force.push(width * dug.soil.unit_weight * pile * pile * dug.n.gamma, 0.0, dug);
+    if (force.fade < 1.0) {
+      force.along += width * (1.0 - force.fade) * shearing_force(strip, rise, layers);
+    }
+    force.on_face += width * weight_on_face(strip, layers);
+    force.bank_depth += width * strip.bank;
+    force.loose_depth += width * strip.loose;
+  }
+  force.bank_depth /= model_.machine.bucket.width_outside;
+  force.loose_depth /= model_.machine.bucket.width_outside;
+}
+
+/// Of the wedge's part in the bank of one row on the face, per metre of width [N/m].
+/// @param pile  thickness of what was pushed up on it [m]
+double BucketResistance::passive_of_bank(const Strip& strip, double pile,
+                                         const Layers& layers) const {
+  const FaceTerms& t = layers.bank;
+  const double surcharge =
+      model_.loose.unit_weight * pile + layers.loose.soil.unit_weight * strip.loose;
   return strip.bank * (t.soil.unit_weight * strip.bank * t.n.gamma + t.soil.cohesion * t.n.c +
-                       surcharge * t.n.q + t.adhesion * t.n.ca) +
-         surcharge * loose * t.n.gamma;
+                       surcharge * t.n.q + t.adhesion * t.n.ca);
+}
+
+/// Likewise of its part in the loose layer.
+double BucketResistance::passive_of_loose(const Strip& strip, double pile,
+                                          const FaceTerms& t) const {
+  const double surcharge = model_.loose.unit_weight * pile;
+  return strip.loose * (t.soil.unit_weight * strip.loose * t.n.gamma + t.soil.cohesion * t.n.c +
+                        surcharge * t.n.q + t.adhesion * t.n.ca);
+}
+
+/// Weight of the wedge's part over the face, per metre of width [N/m].
+double BucketResistance::weight_on_face(const Strip& strip, const Layers& layers) {
+  const double of_bank = 0.5 * strip.bank * strip.bank * layers.bank.n.cot_rake;
+  const double of_loose = strip.loose * (strip.bank * layers.bank.n.cot_rake +
+                                         0.5 * strip.loose * layers.loose.n.cot_rake);
+  return layers.bank.soil.unit_weight * of_bank + layers.loose.soil.unit_weight * of_loose;
+}
+
+/// On the side planes of the mean wedge; that of the loose layer is also over that of the bank.
+BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean,
+                                                           const Layers& layers) {
+  const auto wedge_of = [&](const FaceTerms& t) {
+    return CuttingWedge{t.n.rake, t.soil.friction_angle, t.friction, 0.0};
+  };
+  const auto force = [&](const FaceTerms& t, double depth, double above) {
+    const double stuck = t.soil.cohesion + above * t.shear_at_rest;
+    const SoilStrength strength = {t.soil.unit_weight, stuck, t.soil.adhesion};
+    return side_plane_force(wedge_of(t), t.n, strength, depth);
+  };
+  SideForces sides;
+  const double above = layers.loose.soil.unit_weight * mean.loose_depth;
+  if (mean.bank_depth > 0.0) {
+    sides.bank = force(layers.bank, mean.bank_depth, above) *
+                 side_plane_share(wedge_of(layers.bank), layers.bank.n);
+  }
+  if (mean.loose_depth > 0.0) {
+    const FaceTerms& t = layers.loose;
+    const double over_bank =
+        mean.loose_depth * mean.bank_depth * (layers.bank.n.cot_rake + layers.bank.n.cot_failure);
+    const double stress = t.soil.cohesion + 0.5 * above * t.shear_at_rest;
+    sides.loose = (force(t, mean.loose_depth, 0.0) + 2.0 * over_bank * stress) *
+                  side_plane_share(wedge_of(t), t.n);
+  }
+  return sides;
 }
 
 /// What is not pushed up is sheared off and lifted to where it lies in the bucket, `rise` above the
 /// lip: against the motion, per metre of width [N/m].
-double BucketResistance::shearing_force(const Strip& strip, double rise, const FaceTerms& t) const {
-  const double shear = t.soil.cohesion + at_rest_pressure(t.soil, strip.bank) * t.tan_friction;
-  const double lifted = t.soil.unit_weight * strip.bank + model_.loose.unit_weight * strip.loose;
-  const double lift = std::max(0.0, rise - 0.5 * (strip.bank + strip.loose));
-  return strip.bank * shear + lifted * lift;
+double BucketResistance::shearing_force(const Strip& strip, double rise,
+                                        const Layers& layers) const {
+  const SoilState& bank = layers.bank.soil;
+  const SoilState& loose = layers.loose.soil;
+  const double above = loose.unit_weight * strip.loose;
+  const double in_bank =
+      bank.cohesion + (above + 0.5 * bank.unit_weight * strip.bank) * layers.bank.shear_at_rest;
+  const double in_loose = loose.cohesion + 0.5 * above * layers.loose.shear_at_rest;
+  const double lifted =
+      bank.unit_weight * strip.bank + above + model_.loose.unit_weight * strip.pile;
+  const double lift = std::max(0.0, rise - 0.5 * (strip.depth() + strip.pile));
+  return strip.bank * in_bank + strip.loose * in_loose + lifted * lift;
 }
 
-/// Loose soil over the top of the wedge, as an even layer on all of it; what lies over the face is
-/// in the bucket, and payload. In loose soil alone, all of it [m].
-double BucketResistance::loose_on_wedge(Index row, Index col, const Strip& strip,
-                                        const FaceTerms& terms) const {
-  if (!(strip.bank > 0.0)) return strip.loose;
-  const double ahead = strip.bank * terms.cot_failure;
-  const double cells = ahead / ground_.cell_size();
-  double sum = 0.0;
-  for (Index i = 0; static_cast<double>(i) < cells && col - i >= ground_.cells().col_begin; ++i) {
-    sum += std::min(1.0, cells - static_cast<double>(i)) * ground_.loose(row, col - i);
+/// What was pushed up over the top of the wedge, as an even layer on all of it; what lies over the
+/// face is in the bucket, and payload. Where nothing else is cut, all of it [m].
+double BucketResistance::pile_on_wedge(Index row, const Place& place, const Strip& strip,
+                                       const Layers& layers) const {
+  if (!(strip.depth() > 0.0)) return strip.pile;
+  const double ahead =
+      strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
+  const double over = strip.bank * layers.bank.n.cot_rake + strip.loose * layers.loose.n.cot_rake;
+  double cells = ahead / ground_.cell_size();
+  double sum = std::min(1.0, cells) * pile_in(row, place);
+  const Eigen::ArrayXXd& lying = ground_.before().loose;
+  std::size_t cell = ground_.at(row, place.col);
+  for (Index col = place.col - 1; --cells > 0.0 && col >= ground_.cells().col_begin; --col) {
+    cell -= ground_.column_step();
+    sum += std::min(1.0, cells) * std::max(0.0, ground_.loose(cell) - lying(row, col));
   }
-  return sum * ground_.cell_size() / (ahead + strip.bank * terms.cot_rake);
+  return sum * ground_.cell_size() / (ahead + over);
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
@@ -316,19 +404,22 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     const Vector2d side = cavity.corner(k + 1) - cavity.corner(k);
     const Vector2d point = s.at.tip + cavity.corner(k) + (along - std::floor(along)) * side;
     if (!(point.x() > s.to.x() && swept_to(point.x(), behind) > point.y() + least_sunk)) continue;
-    const double level = std::min(swept_to(point.x(), behind), uncut_between(point.x()));
+    const double level = std::min(swept_to(point.x(), behind), surface_between(point.x()));
     const double sunk = level - point.y();
     if (!(sunk > least_sunk)) continue;
     const Index col = swath_.column(point.x());
-    const SoilState soil = mean_soil_at(col);
-    const double depth = std::max(0.0, uncut_at(col) - point.y());
+    const CutSoil ground = soil_above(col, point.y());
+    const SoilState& soil = ground.bank_depth > 0.0 ? ground.bank : ground.loose;
     const double pressure =
-        std::min(1.0, sunk / footing) * bearing_capacity(soil, depth, floor_length());
+        std::min(1.0, sunk / footing) * bearing_capacity(soil, ground.overburden(), floor_length());
     const double area = side.norm() * segments / heel_samples * model_.machine.bucket.width_outside;
     const Vector2d inward = Vector2d(-side.y(), side.x()).normalized();
     const double force = pressure * area;
     r.heel_force += force * (inward - std::tan(soil.tool_friction_angle) * motion);
     r.heel_point += force * point;
+    if (!(ground.bank_depth > 0.0) && !ground_.loose_is_even()) {
+      r.pressed.push_back({col, pressure});
+    }
     pressed += force;
   }
   if (pressed > 0.0) r.heel_point /= pressed;
@@ -346,32 +437,70 @@ double BucketResistance::swept_to(double x, std::size_t& pose) const {
   return ahead.z + share * (behind.z - ahead.z);
 }
 
-/// uncut_at() between the centres of cells, so that slopes have no steps; -infinity where unknown.
-double BucketResistance::uncut_between(double x) const {
+/// surface_at() between the centres of cells, so that slopes have no steps; -infinity where
+/// unknown.
+double BucketResistance::surface_between(double x) const {
   const HeightMap& map = ground_.before().bank;
   const auto last = static_cast<double>(map.z.cols() - 1);
   const double at = std::clamp((x - map.origin.x()) / map.cell_size - 0.5, 0.0, last);
   const auto col = static_cast<Index>(at);
   const double t = at - static_cast<double>(col);
-  const double uncut =
-      (1.0 - t) * uncut_at(col) + t * uncut_at(std::min(col + 1, map.z.cols() - 1));
-  return std::isnan(uncut) ? -std::numeric_limits<double>::infinity() : uncut;
+  const double surface =
+      (1.0 - t) * surface_at(col) + t * surface_at(std::min(col + 1, map.z.cols() - 1));
+  return std::isnan(surface) ? -std::numeric_limits<double>::infinity() : surface;
 }
 
 // ---- Parts of them ------------------------------------------------------------------------------
 
-BucketResistance::Strip BucketResistance::strip_at(Index row, Index col, double tip_z) const {
-  const double bank = ground_.before().bank.z(row, col) - tip_z;
-  const double loose = ground_.loose(row, col);
-  if (!(bank + loose > 0.0)) return {};
-  return {std::max(0.0, bank), std::min(loose, bank + loose)};
+BucketResistance::Strip BucketResistance::strip_at(Index row, const Place& place) const {
+  const double bank = ground_.before().bank.z(row, place.col) - place.tip.y();
+  const double loose = ground_.before().loose(row, place.col);
+  const double pile = pile_in(row, place);
+  if (!(bank + loose + pile > 0.0)) return {};
+  return {std::max(0.0, bank), std::min(loose, std::max(0.0, bank + loose)),
+          std::min(pile, bank + loose + pile)};
 }
 
-SoilState BucketResistance::mean_soil_at(Index col) const {
-  if (ground_.bank_is_even()) return model_.bank;
+/// What this dig has laid on a cell that the lip is in or has not reached [m].
+double BucketResistance::pile_in(Index row, const Place& place) const {
+  const double lay = ground_.before().loose(row, place.col);
+  const double lies = ground_.loose(row, place.col);
+  if (!(lay > 0.0)) return lies;
+  const HeightMap& map = ground_.before().bank;
+  const double right = map.origin.x() + map.cell_size * static_cast<double>(place.col + 1);
+  const double passed = std::clamp((right - place.lip.x()) / map.cell_size, 0.0, 1.0) *
+                        swath_.cover(row - swath_.first_row());
+  const double left = std::clamp(place.lip.y() - map.z(row, place.col), 0.0, lay);
+  return std::max(0.0, lies - lay + passed * (lay - left));
+}
+
+double BucketResistance::pile_at(const Place& place) const {
+  return swath_.mean([&](Index row) { return pile_in(row, place); });
+}
+
+CutSoil BucketResistance::soil_above(Index col, double z) const {
+  CutSoil cut;
+  cut.bank = ground_.bank_is_even() ? model_.bank : mean_bank(col);
+  cut.loose = ground_.loose_is_even() ? model_.loose : mean_loose(col);
+  cut.bank_depth = std::max(0.0, bank_at(col) - z);
+  cut.loose_depth = std::max(0.0, surface_at(col) - z - cut.bank_depth);
+  return cut;
+}
+
+SoilState BucketResistance::mean_bank(Index col) const {
   const double e = swath_.mean([&](Index row) { return ground_.bank_void_ratio(row, col); });
   return checked_bank_state(model_.soil,
                             std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max));
+}
+
+/// Of all its loose soil, or, where none lies, of soil just dug.
+SoilState BucketResistance::mean_loose(Index col) const {
+  const Terrain& before = ground_.before();
+  const double thickness = swath_.mean([&](Index row) { return before.loose(row, col); });
+  if (!(thickness > 0.0)) return model_.loose;
+  const double sum = swath_.mean(
+      [&](Index row) { return before.loose(row, col) * before.loose_void_ratio(row, col); });
+  return checked_loose_state(model_.soil, sum / thickness);
 }
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.
@@ -379,7 +508,7 @@ double BucketResistance::surface_slope(Index col) const {
   const auto reach = std::max<Index>(1, std::lround(slope_reach / ground_.cell_size()));
   const Index ahead = std::max<Index>(0, col - reach);
   if (ahead == col) return 0.0;
-  const double rise = uncut_at(ahead) - uncut_at(col);
+  const double rise = surface_at(ahead) - surface_at(col);
   return std::isnan(rise)
              ? 0.0
              : std::atan2(rise, ground_.cell_size() * static_cast<double>(col - ahead));
@@ -400,22 +529,32 @@ double BucketResistance::penetrating_area(double driven, double depth,
          std::min(teeth.thickness, depth);
 }
 
+/// Of lip or teeth, `driven` along the floor into soil that cannot yield [N].
+double BucketResistance::driving_force(const CutSoil& cut, double driven) const {
+  const Bucket& bucket = model_.machine.bucket;
+  const double height = bucket.teeth ? bucket.teeth->thickness : bucket.edge_thickness;
+  return cut.mean_at_point(height, [&](const SoilState& soil) {
+    return cone_index(model_.soil, soil, cut.overburden() / soil.unit_weight) *
+           penetrating_area(driven, cut.depth(), soil);
+  });
+}
+
 /// Blunt lip in soil that yields towards the surface (Balovnev 1983, thin edge); the part of a
 /// motion that goes down meets soil that cannot yield, and the cone index.
-double BucketResistance::edge_force(double depth, double climb, const SoilState& soil) const {
-  if (!(depth > 0.0)) return 0.0;
+double BucketResistance::edge_force(const CutSoil& cut, double climb) const {
+  if (!(cut.depth() > 0.0)) return 0.0;
   const Bucket& bucket = model_.machine.bucket;
-  const double phi = soil.friction_angle;
-  const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
-  const double thickness = std::min(bucket.edge_thickness, depth);
-  const double pressure = 0.5 * thickness * soil.unit_weight + soil.cohesion / std::tan(phi) +
-                          depth * soil.unit_weight * active;
-  const double yielding = pressure * blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle) *
-                          thickness * bucket.width_outside;
+  const double thickness = std::min(bucket.edge_thickness, cut.depth());
+  const double pressure = cut.mean_at_point(thickness, [&](const SoilState& soil) {
+    const double phi = soil.friction_angle;
+    const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
+    return (0.5 * thickness * soil.unit_weight + soil.cohesion / std::tan(phi) +
+            cut.overburden() * active) *
+           blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle);
+  });
+  const double yielding = pressure * thickness * bucket.width_outside;
   const double plunge = std::max(0.0, -std::sin(climb));
-  const double driving = plunge > 0.0 ? cone_index(model_.soil, soil, depth) *
-                                            penetrating_area(floor_length(), depth, soil)
-                                      : 0.0;
+  const double driving = plunge > 0.0 ? driving_force(cut, floor_length()) : 0.0;
   return (1.0 - plunge) * yielding + plunge * driving;
 }
 

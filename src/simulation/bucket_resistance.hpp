@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include <excavplan/machine/dig_path.hpp>
@@ -13,6 +15,7 @@
 #include "simulation/ground_window.hpp"
 #include "simulation/soil_wedges.hpp"
 #include "simulation/swath.hpp"
+#include "soil/cut_soil.hpp"
 
 namespace excavplan {
 
@@ -54,6 +57,13 @@ struct Resistance {
   double wedge_length = 0.0;  ///< of the top of the wedge that is pushed, ahead of the lip [m]
   double edge = 0.0;          ///< part of lip_force that is of lip and teeth, against the motion
 
+  /// Where the heel stands on loose soil that can be compacted.
+  struct Pressed {
+    Eigen::Index col;
+    double pressure;  ///< [Pa]
+  };
+  std::vector<Pressed> pressed;
+
   Eigen::Vector2d total() const { return face_force + lip_force + heel_force; }
 };
 
@@ -69,38 +79,52 @@ class BucketResistance {
 
   /// Length of the bucket's floor [m].
   double floor_length() const;
-  /// Top of the ground in a column, mean over the width: as it was, and with loose soil on it [m].
-  double uncut_at(Eigen::Index col) const;
+  /// Top of the bank in a column, and of what lay on it, mean over the width, before the dig [m].
+  double bank_at(Eigen::Index col) const;
   double surface_at(Eigen::Index col) const;
 
  private:
-  struct Attitude;
+  struct Place;
   struct Fill;
   struct SlidingFace;
   struct FaceForce;
   struct FaceTerms;
+  struct Layers;
   struct Strip;
+  /// Of the wedge's side planes, as parts of the resultant on the face [N].
+  struct SideForces {
+    double bank = 0.0;
+    double loose = 0.0;
+  };
 
   Fill fill_in(const Cavity& cavity, double volume) const;
-  Resistance drive_in(const Eigen::Vector2d& tip, Eigen::Index col, double floor,
-                      const Eigen::Vector2d& motion) const;
-  Resistance push_wedge(const Eigen::Vector2d& tip, Eigen::Index col, const Attitude& attitude,
-                        const Fill& fill, const Eigen::Vector2d& motion) const;
-  FaceForce slide(const SlidingFace& face, const Eigen::Vector2d& tip, Eigen::Index col,
-                  double turn, const Fill& fill) const;
+  Resistance drive_in(const Place& place) const;
+  Resistance push_wedge(const Place& place, const Fill& fill) const;
+  FaceTerms terms_of(const SoilState& soil, const SlidingFace& face, double slope) const;
+  FaceForce slide(const SlidingFace& face, const Place& place, const Fill& fill) const;
+  void push_strips(const SlidingFace& face, const Place& place, const Layers& mean, double rise,
+                   FaceForce& force) const;
   void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance) const;
   double swept_to(double x, std::size_t& pose) const;
-  double uncut_between(double x) const;
+  double surface_between(double x) const;
 
-  Strip strip_at(Eigen::Index row, Eigen::Index col, double tip_z) const;
-  double passive_force(const Strip& strip, double loose, const FaceTerms& terms) const;
-  double shearing_force(const Strip& strip, double rise, const FaceTerms& terms) const;
-  double loose_on_wedge(Eigen::Index row, Eigen::Index col, const Strip& strip,
-                        const FaceTerms& terms) const;
-  SoilState mean_soil_at(Eigen::Index col) const;
+  Strip strip_at(Eigen::Index row, const Place& place) const;
+  double pile_in(Eigen::Index row, const Place& place) const;
+  double pile_at(const Place& place) const;
+  double pile_on_wedge(Eigen::Index row, const Place& place, const Strip& strip,
+                       const Layers& layers) const;
+  double passive_of_bank(const Strip& strip, double pile, const Layers& layers) const;
+  double passive_of_loose(const Strip& strip, double pile, const FaceTerms& terms) const;
+  static double weight_on_face(const Strip& strip, const Layers& layers);
+  static SideForces side_forces(const FaceForce& mean, const Layers& layers);
+  double shearing_force(const Strip& strip, double rise, const Layers& layers) const;
+  CutSoil soil_above(Eigen::Index col, double z) const;
+  SoilState mean_bank(Eigen::Index col) const;
+  SoilState mean_loose(Eigen::Index col) const;
   double surface_slope(Eigen::Index col) const;
   double penetrating_area(double driven, double depth, const SoilState& soil) const;
-  double edge_force(double depth, double climb, const SoilState& soil) const;
+  double driving_force(const CutSoil& cut, double driven) const;
+  double edge_force(const CutSoil& cut, double climb) const;
   double side_plate_area(double depth, double floor) const;
 
   const HeightMapModel& model_;

@@ -10,6 +10,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "soil/loose_soil.hpp"
 #include "soil/soil.hpp"
 
 namespace excavplan {
@@ -115,6 +116,19 @@ void GroundWindow::lower_bank(std::size_t cell, double thickness) {
 
 SoilState GroundWindow::bank_state(Index row, Index col) const {
   return bank_is_even() ? soil_.bank : checked_bank_state(soil_.kind, bank_void_ratio(row, col));
+}
+
+SoilState GroundWindow::lying_state(Index row, Index col) const {
+  return loose_is_even() ? soil_.loose
+                         : checked_loose_state(soil_.kind, whole_.loose_void_ratio(row, col));
+}
+
+void GroundWindow::compact(std::size_t cell, double pressure) {
+  if (void_ratio_.empty() || !(loose_[cell] > 0.0)) return;
+  const double before = void_ratio_[cell];
+  void_ratio_[cell] = checked_compaction(soil_.kind, before, pressure);
+  loose_[cell] *= (1.0 + void_ratio_[cell]) / (1.0 + before);
+  changed(cell);
 }
 
 void GroundWindow::mix(std::size_t cell, double thickness) {

@@ -26,8 +26,8 @@ struct GroundSoil {
 /// The part of a terrain on which a dig works: a copy of the cells near it that grows on demand, so
 /// that the size of the terrain does not matter. Rows and columns are those of the whole terrain.
 ///
-/// Soil that is dug or slides swells to the loose state; only loose soil that never moved is
-/// denser.
+/// Soil that is dug or slides swells to the loose state; only loose soil that never moved, or was
+/// pressed since, is denser.
 class GroundWindow {
  public:
   /// @throws Error (bad_input) as cover()
@@ -66,6 +66,10 @@ class GroundWindow {
   bool bank_is_even() const { return whole_.bank_void_ratio.size() == 0; }
   /// State of a cell's bank.
   SoilState bank_state(Eigen::Index row, Eigen::Index col) const;
+  /// Whether all loose soil is in the state of soil just dug.
+  bool loose_is_even() const { return whole_.loose_void_ratio.size() == 0; }
+  /// State of the loose soil that lay on a cell before.
+  SoilState lying_state(Eigen::Index row, Eigen::Index col) const;
 
   /// Loose thickness of a thickness of the bank, or of the loose layer, once it has moved [m].
   double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const;
@@ -81,6 +85,9 @@ class GroundWindow {
     loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
     changed(cell);
   }
+  /// Presses on the loose layer of a cell [Pa]; it keeps its solids. Without void ratios a terrain
+  /// does not remember it.
+  void compact(std::size_t cell, double pressure);
   /// Adds soil that has moved.
   void raise_loose(std::size_t cell, double thickness) {
     if (!void_ratio_.empty()) mix(cell, thickness);

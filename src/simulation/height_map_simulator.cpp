@@ -98,12 +98,19 @@ class Dig {
     if (account_.result.stall) return;
     account_.travel(s.length);
     if (!digs) return;
+    for (const Resistance::Pressed& heel : resistance.pressed) press(heel);
     const double before = fill_;
     cut(s);
     pile_.move_to(s.to.x(), resistance.wedge_length);
     const double ahead = level_ahead(s.to);
     spill(ahead,
           [&](double level) { return room_in_bucket(std::max(ahead, level) - s.to.y(), before); });
+  }
+
+  void press(const Resistance::Pressed& heel) {
+    for (Index row = swath_.first_row(); row < swath_.end_row(); ++row) {
+      ground_.compact(ground_.at(row, heel.col), heel.pressure);
+    }
   }
 
   /// Level of the surface just ahead of the lip, where it is known; else that of the lip.

@@ -50,6 +50,7 @@ struct Cutting {
   Eigen::Vector2d motion = Eigen::Vector2d::Zero();  ///< unit vector
   GroundAhead ground;
   SoilState bank;
+  SoilState loose;        ///< of the layer on it
   double pile = 0.0;      ///< height of its level top [m]
   double contents = 0.0;  ///< of the bucket, loose [m^3]
 };

@@ -130,6 +130,7 @@ class SectionDig {
     cutting.motion = step / length;
     cutting.ground = section_.ahead(tip.x());
     cutting.bank = section_.bank_of(cutting.ground.void_ratio);
+    cutting.loose = section_.loose_of(cutting.ground.loose_void_ratio);
     cutting.pile = pile_.height(fall(cutting.ground));
     cutting.contents = contents_;
     return section_resistance(model_, section_, cutting, bucket_, phase);

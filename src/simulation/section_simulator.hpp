@@ -12,7 +12,7 @@
 namespace excavplan {
 
 /// Rises with every change of the simulator that affects the result of a dig.
-inline constexpr int section_simulator_version = 2;
+inline constexpr int section_simulator_version = 3;
 
 struct SectionModel;
 

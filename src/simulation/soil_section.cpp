@@ -11,6 +11,7 @@
 
 #include "base/text.hpp"
 #include "simulation/section_bucket.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -261,7 +262,7 @@ void SoilSection::cover_columns(const Reach& reach) {
   while (left(end_col()) < reach.x_max + reach.behind && grow_behind()) continue;
   while (left(first_col_) > reach.x_min - growth && grow_ahead()) continue;
   for (Index col = end_col() - 1; col >= first_col_ && middle(col) > reach.x_max; --col) {
-    left_behind_.emplace_back(middle(col), column(col).bank_before);
+    left_behind_.emplace_back(middle(col), column(col).top_before());
   }
 }
 
@@ -290,12 +291,19 @@ bool SoilSection::grow_behind() {
 
 Column SoilSection::mean_column(Index col) {
   Column mean;
+  double thickness = 0.0;  // of the loose soil, as void ratios count
   for (Index r = 0; r < swath_.rows(); ++r) {
     const Index row = swath_.first_row() + r;
     mean.bank += swath_.cover(r) * ground_.bank(row, col);
     mean.loose += swath_.cover(r) * ground_.loose(row, col);
     mean.void_ratio += swath_.cover(r) * ground_.bank_void_ratio(row, col);
+    if (ground_.loose_is_even()) continue;
+    mean.loose_void_ratio += swath_.cover(r) * ground_.before().loose(row, col) *
+                             ground_.before().loose_void_ratio(row, col);
+    thickness += swath_.cover(r) * ground_.before().loose(row, col);
   }
+  mean.loose_void_ratio =
+      thickness > 0.0 ? mean.loose_void_ratio / thickness : ground_.soil().loose.void_ratio;
   mean.bank_before = mean.bank /= rows_;
   mean.loose_before = mean.loose /= rows_;
   const SoilKind& kind = ground_.soil().kind;
@@ -388,7 +396,7 @@ double SoilSection::take_loose(Index col, double thickness) {
 }
 
 void SoilSection::pass(const Vector2d& tip) {
-  const double level = std::min(tip.y(), uncut(tip.x()));
+  const double level = std::min(tip.y(), surface_before(tip.x()));
   if (left_behind_.empty() || tip.x() < left_behind_.back().x()) {
     left_behind_.emplace_back(tip.x(), level);
   } else if (tip.x() == left_behind_.back().x()) {
@@ -398,14 +406,33 @@ void SoilSection::pass(const Vector2d& tip) {
 
 // ---- The ground ahead and behind ----------------------------------------------------------------
 
-double SoilSection::uncut(double x) const {
+template <typename Level>
+double SoilSection::between(double x, const Level& level) const {
   const double first = middle(first_col_);
   const double along =
       std::clamp((x - first) / cell_size_, 0.0, static_cast<double>(columns_.size() - 1));
   const auto i = static_cast<std::size_t>(along);
-  const double bank = columns_[i].bank_before;
-  if (i + 1 == columns_.size()) return bank;
-  return bank + (along - static_cast<double>(i)) * (columns_[i + 1].bank_before - bank);
+  const double here = level(columns_[i]);
+  if (i + 1 == columns_.size()) return here;
+  return here + (along - static_cast<double>(i)) * (level(columns_[i + 1]) - here);
+}
+
+double SoilSection::bank_before(double x) const {
+  return between(x, [](const Column& column) { return column.bank_before; });
+}
+
+double SoilSection::surface_before(double x) const {
+  return between(x, [](const Column& column) { return column.top_before(); });
+}
+
+SoilState SoilSection::bank_of(double void_ratio) const {
+  const GroundSoil& soil = ground_.soil();
+  return ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, void_ratio);
+}
+
+SoilState SoilSection::loose_of(double void_ratio) const {
+  const GroundSoil& soil = ground_.soil();
+  return ground_.loose_is_even() ? soil.loose : checked_loose_state(soil.kind, void_ratio);
 }
 
 GroundAhead SoilSection::ahead(double x) const {
@@ -415,6 +442,7 @@ GroundAhead SoilSection::ahead(double x) const {
   GroundAhead mean;
   double moment = 0.0;
   double inertia = 0.0;
+  double all_loose = 0.0;
   const double centre = 0.5 * (middle(first) + middle(last));
   for (Index col = first; col <= last; ++col) {
     const Column& here = column(col);
@@ -424,9 +452,13 @@ GroundAhead SoilSection::ahead(double x) const {
     mean.bank += bank / n;
     mean.surface += (bank + loose) / n;
     mean.void_ratio += here.void_ratio / n;
+    mean.loose_void_ratio += loose * here.loose_void_ratio;
+    all_loose += loose;
     moment += (middle(col) - centre) * (bank + loose);
     inertia += square(middle(col) - centre);
   }
+  mean.loose_void_ratio =
+      all_loose > 0.0 ? mean.loose_void_ratio / all_loose : ground_.soil().loose.void_ratio;
   mean.gradient = inertia > 0.0 ? moment / inertia : 0.0;
   const double shift = mean.gradient * (x - centre);
   mean.bank += shift;

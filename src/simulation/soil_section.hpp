@@ -21,9 +21,10 @@
 namespace excavplan {
 
 struct Column {
-  double bank_before = 0.0;   ///< mean over the width [m]
-  double loose_before = 0.0;  ///< [m]
-  double void_ratio = 0.0;    ///< of the bank, mean over the width [-]
+  double bank_before = 0.0;       ///< mean over the width [m]
+  double loose_before = 0.0;      ///< [m]
+  double void_ratio = 0.0;        ///< of the bank, mean over the width [-]
+  double loose_void_ratio = 0.0;  ///< of the loose soil that lay here, likewise [-]
   double bank = 0.0;
   double loose = 0.0;       ///< rest of the loose soil that lay here
   double swept_from = 0.0;  ///< the tip has passed from here [m] ..
@@ -50,6 +51,7 @@ struct GroundAhead {
   double surface = 0.0;
   double gradient = 0.0;    ///< dz / dx: positive downhill along the travel
   double void_ratio = 0.0;  ///< of the bank
+  double loose_void_ratio = 0.0;
 };
 
 /// Where a tip works.
@@ -78,12 +80,9 @@ class SoilSection {
   double middle(Eigen::Index col) const { return left(col) + 0.5 * cell_size_; }
   Eigen::Index column_at(double x) const;  ///< the nearest column outside the section
 
-  /// State of the bank where its void ratio is this.
-  SoilState bank_of(double void_ratio) const {
-    const GroundSoil& soil = ground_.soil();
-    return ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, void_ratio);
-  }
-
+  /// States of bank and loose soil where their void ratio is this.
+  SoilState bank_of(double void_ratio) const;
+  SoilState loose_of(double void_ratio) const;
   /// The tip has come here.
   void pass(const Eigen::Vector2d& tip);
 
@@ -91,10 +90,10 @@ class SoilSection {
   CutArea cut(Eigen::Vector2d p, Eigen::Vector2d q);
   /// Through the ground up to 0.25 m ahead.
   GroundAhead ahead(double x) const;
-  /// Level of the undisturbed ground, between the middles of columns.
-  double uncut(double x) const;
-
-  /// The top of the bank from the tip backwards, last point first, beyond its start the ground.
+  /// Levels of bank and surface before the dig, between the middles of columns.
+  double bank_before(double x) const;
+  double surface_before(double x) const;
+  /// The ground under the bucket from the tip backwards, last point first.
   const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 
   /// Length of a pile's level top [m], its height there [m], and the fall from there on per metre.
@@ -120,6 +119,8 @@ class SoilSection {
   bool grow_ahead();
   bool grow_behind();
   Column mean_column(Eigen::Index col);
+  template <typename Level>
+  double between(double x, const Level& level) const;
   double take_bank(Eigen::Index col, double thickness);
   double take_loose(Eigen::Index col, double thickness);
   void raise(const Heap& heap, double area, Eigen::Index begin, Eigen::Index end);

@@ -7,15 +7,15 @@
 
 namespace excavplan {
 
-SoilWedges::SoilWedges(SoilKind kind, const SoilState& bank)
-    : kind_(std::move(kind)),
-      friction_(bank.friction_angle),
-      on_steel_(bank.friction_angle, bank.tool_friction_angle),
-      on_soil_(bank.friction_angle, bank.friction_angle) {}
+SoilWedges::SoilWedges(SoilKind kind, const SoilState& bank, const SoilState& loose)
+    : kind_(std::move(kind)), bank_(bank), loose_(loose) {}
 
 EarthmovingFactors SoilWedges::at(double rake, double slope, const SoilState& soil,
                                   bool on_soil) const {
-  if (soil.friction_angle == friction_) return (on_soil ? on_soil_ : on_steel_).at(rake, slope);
+  for (const Tables* tables : {&bank_, &loose_}) {
+    if (soil.friction_angle != tables->friction) continue;
+    return (on_soil ? tables->on_soil : tables->on_steel).at(rake, slope);
+  }
   std::call_once(uneven_made_, [&] {
     const double densest = kind_.friction_loosest + kind_.friction_gain;
     const auto [low, high] = std::minmax(kind_.friction_loosest, densest);

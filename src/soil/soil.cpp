@@ -187,6 +187,16 @@ SoilState checked_bank_state(const SoilKind& soil, double void_ratio) {
                           100.0 * std::clamp((soil.void_ratio_max - void_ratio) / span, 0.0, 1.0));
 }
 
+SoilState checked_loose_state(const SoilKind& soil, double void_ratio) {
+  const double e = std::clamp(void_ratio, soil.void_ratio_min, soil.void_ratio_loose);
+  const double compacted =
+      (soil.void_ratio_loose - e) / (soil.void_ratio_loose - soil.void_ratio_min);
+  SoilState state = state_of_void_ratio(soil, e);
+  set_strength(soil, soil.cohesion_loosest * std::expm1(soil.cohesion_growth * compacted),
+               soil.friction_loosest + soil.friction_gain * compacted, state);
+  return state;
+}
+
 SoilState bank_state(const SoilKind& soil, double density_percent) {
   require_soil(soil);
   return state_of_density(soil, density_percent);
@@ -204,9 +214,7 @@ SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio) {
 
 SoilState loose_state(const SoilKind& soil) {
   require_soil(soil);
-  SoilState state = state_of_void_ratio(soil, soil.void_ratio_loose);
-  set_strength(soil, 0.0, soil.friction_loosest, state);
-  return state;
+  return checked_loose_state(soil, soil.void_ratio_loose);
 }
 
 double cone_index(const SoilKind& soil, const SoilState& state, double depth) {

@@ -19,5 +19,7 @@ constexpr double most_cone_index = 1e9;   ///< likewise
 
 /// bank_state_of_void_ratio() of a soil and a void ratio that were checked before.
 SoilState checked_bank_state(const SoilKind& soil, double void_ratio);
+/// loose_state_of_void_ratio() likewise; out of the range it is that at its end.
+SoilState checked_loose_state(const SoilKind& soil, double void_ratio);
 
 }  // namespace excavplan

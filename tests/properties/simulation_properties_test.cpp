@@ -9,7 +9,7 @@
 
 #include <Eigen/LU>
 
-#include "simulation/earthmoving.hpp"
+#include "soil/earthmoving.hpp"
 #include "simulation/section_bucket.hpp"
 #include "simulation/slump.hpp"
 #include "simulation/swath.hpp"

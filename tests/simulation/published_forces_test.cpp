@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "base/table.hpp"
-#include "simulation/earthmoving.hpp"
+#include "soil/earthmoving.hpp"
 
 namespace excavplan {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/soil/loose_soil.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include <unistd.h>
@@ -286,6 +287,49 @@ TEST(Soil, StateOfAVoidRatioIsThatOfItsDensity) {
   }
   EXPECT_EQ(test::error_of([&] { bank_state_of_void_ratio(loam, 1.4); }),
             "void ratio of loam is 1.4, must be in 0.415 .. 1.3");
+}
+
+TEST(LooseSoil, IsWeakerThanTheBankAndGainsStrengthAsItIsCompacted) {
+  for (const std::string& name : kinds) {
+    SCOPED_TRACE(name);
+    const SoilKind soil = shipped(name);
+    SoilState last = loose_state(soil);
+    for (double e = soil.void_ratio_loose; e > soil.void_ratio_min; e -= 0.02) {
+      const SoilState state = loose_state_of_void_ratio(soil, e);
+      const SoilState bank = bank_state_of_void_ratio(soil, e);
+      EXPECT_EQ(state.unit_weight, bank.unit_weight);
+      EXPECT_LE(state.cohesion, bank.cohesion);
+      EXPECT_LE(state.friction_angle, bank.friction_angle);
+      EXPECT_GE(state.cohesion, last.cohesion);
+      EXPECT_LT(state.cohesion - last.cohesion,
+                0.2 * soil.cohesion_loosest * std::exp(soil.cohesion_growth));
+      EXPECT_GE(state.friction_angle, last.friction_angle);
+      EXPECT_GE(cone_index(soil, state, 0.2), cone_index(soil, last, 0.2));
+      last = state;
+    }
+    const SoilState densest = loose_state_of_void_ratio(soil, soil.void_ratio_min);
+    EXPECT_NEAR(densest.friction_angle, soil.friction_loosest + soil.friction_gain, 1e-12);
+  }
+  const SoilKind loam = shipped("loam");
+  EXPECT_EQ(test::error_of([&] { loose_state_of_void_ratio(loam, 1.29); }),
+            "void ratio of loose loam is 1.29, must be in 0.415 .. 1.283");
+}
+
+TEST(LooseSoil, CompactsWithTheLogarithmOfThePressure) {
+  for (const std::string& name : kinds) {
+    const SoilKind soil = shipped(name);
+    const double loose = soil.void_ratio_loose;
+    EXPECT_EQ(compacted_void_ratio(soil, loose, 5000.0), loose);
+    const double ten = loose - compacted_void_ratio(soil, loose, 5e4);
+    EXPECT_NEAR(ten, 0.3 * (loose - 0.27), 1e-12);
+    EXPECT_NEAR(loose - compacted_void_ratio(soil, loose, 5000.0 * std::sqrt(10.0)), 0.5 * ten,
+                1e-12);
+    EXPECT_EQ(compacted_void_ratio(soil, loose, 1e30), soil.void_ratio_min);
+    EXPECT_EQ(compacted_void_ratio(soil, soil.void_ratio_min, 2e4), soil.void_ratio_min);
+  }
+  const SoilKind loam = shipped("loam");
+  EXPECT_EQ(test::error_of([&] { compacted_void_ratio(loam, 1.0, -1.0); }),
+            "pressure on loose soil [Pa] is -1, must be not negative and finite");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/earthmoving.hpp"
+#include "soil/earthmoving.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,49 +19,6 @@ double cot(double angle) { return 1.0 / std::tan(angle); }
 
 constexpr double lowest_failure = 2.0 * degree;
 
-/// Golden section between two angles, to `tolerance`.
-template <typename Function>
-double least_between(double low, double high, double tolerance, const Function& function) {
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double a = high - golden * (high - low);
-  double b = low + golden * (high - low);
-  double at_a = function(a);
-  double at_b = function(b);
-  while (high - low > tolerance) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = function(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = function(b);
-    }
-  }
-  return 0.5 * (low + high);
-}
-
-/// Minimum of a function of the failure angle: the best of a 1 deg scan, then golden section.
-template <typename Function>
-std::optional<double> least_failure_angle(double highest, double tolerance,
-                                          const Function& function) {
-  double best = 0.0;
-  double least = std::numeric_limits<double>::infinity();
-  for (double angle = lowest_failure; angle < highest; angle += degree) {
-    if (const double value = function(angle); value < least) {
-      least = value;
-      best = angle;
-    }
-  }
-  if (std::isinf(least)) return std::nullopt;
-  return least_between(std::max(lowest_failure, best - degree), std::min(highest, best + degree),
-                       tolerance, function);
-}
-
 double highest_failure_angle(const CuttingWedge& wedge) {
   return std::min(pi / 2.0, pi - wedge.rake - wedge.tool_friction - wedge.friction) - 0.1 * degree;
 }
@@ -70,19 +27,22 @@ double highest_failure_angle(const CuttingWedge& wedge) {
 
 std::optional<EarthmovingFactors> earthmoving_factors(const CuttingWedge& wedge, double failure) {
   const double cot_plane = cot(failure + wedge.friction);
-  const double cot_rake = cot(wedge.rake);
   const double face = wedge.rake + wedge.tool_friction;
   EarthmovingFactors n;
   n.rake = wedge.rake;
   n.failure = failure;
-  n.D = std::cos(face) + std::sin(face) * cot_plane;
+  n.sin_face = std::sin(face);
+  n.cos_face = std::cos(face);
+  n.D = n.cos_face + n.sin_face * cot_plane;
   if (!(n.D > 0.0)) return std::nullopt;
+  n.cot_rake = cot(wedge.rake);
+  n.cot_failure = cot(failure);
   const double weight = (std::cos(wedge.slope) + std::sin(wedge.slope) * cot_plane) / n.D;
   n.Q = weight;
-  n.q = (cot_rake + cot(failure)) * weight;
+  n.q = (n.cot_rake + n.cot_failure) * weight;
   n.gamma = 0.5 * n.q;
-  n.c = (1.0 + cot(failure) * cot_plane) / n.D;
-  n.ca = (1.0 - cot_rake * cot_plane) / n.D;
+  n.c = (1.0 + n.cot_failure * cot_plane) / n.D;
+  n.ca = (1.0 - n.cot_rake * cot_plane) / n.D;
   return n;
 }
 
@@ -93,25 +53,45 @@ double gravity_factor(const CuttingWedge& wedge, double failure) {
   return n && n->gamma > 0.0 ? n->gamma : std::numeric_limits<double>::infinity();
 }
 
-/// The critical angle of a wedge little different from one whose angle is known, to 1e-6 rad: the
-/// factors, which have their minimum there, are then exact to rounding.
-double critical_failure_near(const CuttingWedge& wedge, double guess) {
-  const auto factor = [&](double failure) { return gravity_factor(wedge, failure); };
-  const double highest = highest_failure_angle(wedge);
-  const double low = std::max(lowest_failure, guess - 4.0 * degree);
-  const double high = std::min(highest, guess + 4.0 * degree);
-  if (high > low) {
-    const double found = least_between(low, high, 1e-6, factor);
-    if (found > low + 1e-5 && found < high - 1e-5) return found;
-  }
-  return least_failure_angle(highest, 1e-6, factor).value_or(highest);
-}
-
 }  // namespace
 
+// With u = cot(failure + friction) the factor is a quotient of two quadratics, and where its slope
+// is zero is a quadratic as well. Its roots and the ends of the range are where it can be least.
 std::optional<double> critical_failure_angle(const CuttingWedge& wedge) {
-  return least_failure_angle(highest_failure_angle(wedge), 1e-8,
-                             [&](double failure) { return gravity_factor(wedge, failure); });
+  const double sin_phi = std::sin(wedge.friction);
+  const double cos_phi = std::cos(wedge.friction);
+  const double cot_rake = cot(wedge.rake);
+  const double sin_face = std::sin(wedge.rake + wedge.tool_friction);
+  const double cos_face = std::cos(wedge.rake + wedge.tool_friction);
+  // (a + b u)(cos slope + u sin slope) / ((cos phi - u sin phi)(cos face + u sin face))
+  const double a = cot_rake * cos_phi + sin_phi;
+  const double b = cos_phi - cot_rake * sin_phi;
+  const double sin_slope = std::sin(wedge.slope);
+  const double cos_slope = std::cos(wedge.slope);
+  const double n0 = a * cos_slope, n1 = b * cos_slope + a * sin_slope, n2 = b * sin_slope;
+  const double d0 = cos_phi * cos_face, d1 = cos_phi * sin_face - sin_phi * cos_face,
+               d2 = -sin_phi * sin_face;
+  const double square = n2 * d1 - n1 * d2;
+  const double linear = n2 * d0 - n0 * d2;
+  const double constant = n1 * d0 - n0 * d1;
+  const double root = std::sqrt(std::max(0.0, linear * linear - square * constant));
+  const double larger = -(linear + std::copysign(root, linear));
+  const double highest = highest_failure_angle(wedge);
+  std::optional<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](double failure) {
+    if (!(failure >= lowest_failure && failure <= highest)) return;
+    if (const double factor = gravity_factor(wedge, failure); factor < least) {
+      least = factor;
+      best = failure;
+    }
+  };
+  for (const double u : {larger / square, constant / larger}) {
+    consider(std::atan2(1.0, u) - wedge.friction);
+  }
+  consider(lowest_failure);
+  consider(highest);
+  return best;
 }
 
 EarthmovingFactors crescent_factors(const CuttingWedge& wedge, double failure, double width_ratio) {
@@ -165,7 +145,7 @@ CriticalWedges::CriticalWedges(double friction, double tool_friction)
     for (int j = 0; j < slopes; ++j) {
       const CuttingWedge wedge{std::min(lowest_rake + i * rake_step, highest_rake_), friction,
                                tool_friction, lowest_slope_ + j * slope_step_};
-      failure_.push_back(critical_failure_near(wedge, failure_.empty() ? 0.0 : failure_.back()));
+      failure_.push_back(critical_failure_angle(wedge).value_or(highest_failure_angle(wedge)));
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/earthmoving.hpp"
+#include "soil/earthmoving.hpp"
 
 #include <cmath>
 

@@ -35,12 +35,15 @@ struct EarthmovingFactors {
   double rake = 0.0;     ///< rho of the wedge
   double failure = 0.0;  ///< beta, of the failure plane from the surface
   double D = 0.0;        ///< common denominator
+
+  // Of the angles above; the force on the face is at rake + tool friction to the surface.
+  double sin_face = 0.0, cos_face = 0.0, cot_rake = 0.0, cot_failure = 0.0;
 };
 
 /// Factors for a given failure angle. Nothing if that wedge cannot slide (denominator <= 0).
 std::optional<EarthmovingFactors> earthmoving_factors(const CuttingWedge& wedge, double failure);
 
-/// The failure angle of least N_gamma (McKyes 1985), found to 1e-8 rad.
+/// The failure angle of least N_gamma (McKyes 1985), in closed form.
 ///
 /// @return nothing if no wedge can slide: rake + tool friction + friction too near to pi
 std::optional<double> critical_failure_angle(const CuttingWedge& wedge);
