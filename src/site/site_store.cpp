@@ -22,7 +22,7 @@ bool same_heights(const GroundState& a, const GroundState& b) {
 }
 
 std::vector<std::string> files_of(const SiteManifest& manifest) {
-  return {manifest.ground.name, manifest.first.name, manifest.belief.name, manifest.previous.name};
+  return {manifest.ground.name, manifest.first.name, manifest.belief.name};
 }
 
 }  // namespace
@@ -38,6 +38,7 @@ SiteStore::SiteStore(const std::string& folder, bool locked)
 std::vector<std::string> SiteStore::names_of(const SiteManifest& manifest) const {
   std::vector<std::string> names = files_of(manifest);
   const StoredFile& previous = manifest.previous;
+  names.push_back(previous.name);
   if (previous.name.empty() || !folder_.has(previous.name)) return names;
   const SiteManifest before = manifest_of(folder_.path_of(previous.name), folder_.read(previous));
   for (const std::string& each : files_of(before)) names.push_back(each);

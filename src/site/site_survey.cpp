@@ -10,6 +10,7 @@
 
 #include "scans/scan_reading.hpp"
 #include "site/site_grid.hpp"
+#include "site/tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -64,6 +65,12 @@ DensityEstimate estimate_at_machine(const SiteEvent& event, const SiteSettings& 
   return estimate_in(turned, settings, seen_by(ground, event.base, flat_ground(extent, cell)));
 }
 
+/// Mixtures of soils keep to their range but for rounding.
+void hold_void_ratios(const SoilKind& soil, Eigen::ArrayXXd& ratios) {
+  ratios = (ratios > soil.void_ratio_loose).select(soil.void_ratio_loose, ratios).eval();
+  ratios = (ratios < soil.void_ratio_min).select(soil.void_ratio_min, ratios).eval();
+}
+
 /// False of a scan of another place, or in another frame.
 bool fits_ground(const DensityEstimate& estimate) {
   return std::none_of(estimate.warnings.begin(), estimate.warnings.end(), [](const Warning& each) {
@@ -103,6 +110,10 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, Gro
   result.fits = fits_ground(estimate);
   result.ground = result.fits ? std::move(*estimate.ground_after) : std::move(ground);
   if (is_apart && result.fits) estimate = estimate_at_machine(event, settings, ground);
+  hold_void_ratios(settings.soil, result.ground.terrain.loose_void_ratio);
+  if (result.fits && event.dug) {
+    compact_under_tracks(settings, event.base, event.time, result.ground);
+  }
   result.warnings = estimate.warnings;
   if (event.dug) result.estimate = std::move(estimate);
   return result;

@@ -57,14 +57,16 @@ inline Scan scanned(const HeightMap& surface, std::uint64_t seed, const Eigen::V
 /// A machine that digs.
 class DigsInARow {
  public:
-  explicit DigsInARow(double density_percent = 50.0)
+  explicit DigsInARow(double density_percent = 50.0, double relief = 0.03)
       : density_(density_percent),
         ground_(undisturbed(flat_ground(scene_extent(site_.machine, default_dump_point()), 0.05))) {
     for (Eigen::Index row = 0; row < ground_.bank.z.rows(); ++row) {
       for (Eigen::Index col = 0; col < ground_.bank.z.cols(); ++col) {
         const double x = ground_.bank.x(col);
         const double y = ground_.bank.y(row);
-        ground_.bank.z(row, col) = 0.03 * std::sin(1.3 * x + 0.4) * std::cos(1.7 * y);
+        ground_.bank.z(row, col) =
+            relief * (std::sin(1.3 * x + 0.4 + 10.0 * relief) * std::cos(1.7 * y - 7.0 * relief) +
+                      0.5 * std::sin(2.9 * x - 1.1 * y));
       }
     }
   }

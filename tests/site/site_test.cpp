@@ -172,13 +172,26 @@ TEST(SiteDoubts, AScanOfAnotherPlaceIsNotTaken) {
                 },
                 ErrorKind::bad_file),
             "no error");
-  // In another height or frame: it fits nowhere.
-  const SiteUpdate moved = site.update(digs.scan({0.0, 0.0, 0.5}));
-  EXPECT_FALSE(moved.taken && moved.trustworthy);
-  if (!moved.taken) {
-    EXPECT_TRUE(has(moved.warnings, WarningCode::scan_not_taken));
-    EXPECT_TRUE((site.ground().seen == before.seen || before.seen.isNaN()).all());
-  }
+  // Other ground within the extent of the site.
+  DigsInARow elsewhere(50.0, 0.3);
+  elsewhere.scan();
+  const SiteUpdate update = site.update(elsewhere.scan());
+  EXPECT_FALSE(update.taken);
+  EXPECT_FALSE(update.trustworthy);
+  EXPECT_TRUE(has(update.warnings, WarningCode::scan_not_taken));
+  EXPECT_EQ(site.updates(), 1);
+  EXPECT_TRUE((site.ground().seen == before.seen || before.seen.isNaN()).all());
+}
+
+TEST(SiteDoubts, AMachineThatMovedIsToldAndItsScanPutInPlace) {
+  const TemporaryFolder folder;
+  DigsInARow digs(50.0, 0.15);
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const SiteUpdate update = site.update(digs.scan({0.3, 0.0, 0.1}));
+  EXPECT_TRUE(has(update.warnings, WarningCode::registration_beyond_prior));
+  EXPECT_NEAR(height_at(site.ground().terrain.surface(), 6.0, 0.3),
+              height_at(digs.ground().surface(), 6.0, 0.3), 0.015);
 }
 
 TEST(SiteDoubts, ASiteIsOfOneSoilMachineAndLaw) {
