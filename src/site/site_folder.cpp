@@ -20,6 +20,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
+#include "base/input_file.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -99,15 +100,28 @@ std::string SiteFolder::read(const std::string& name) const {
   return read_own_file(path_of(name), most_stored_bytes);
 }
 
-std::string SiteFolder::read(const StoredFile& file) const {
-  if (!is_stored_name(file.name)) {
-    throw Error(ErrorKind::bad_file, path_of(site_manifest) + ": names " + in_quotes(file.name) +
-                                         ", which is no file of a site");
-  }
-  std::string content = read(file.name);
-  if (checksum_text(content) == file.digest) return content;
+void SiteFolder::require_name(const StoredFile& file) const {
+  if (is_stored_name(file.name)) return;
+  throw Error(ErrorKind::bad_file, path_of(site_manifest) + ": names " + in_quotes(file.name) +
+                                       ", which is no file of a site");
+}
+
+void SiteFolder::require_same(const StoredFile& file, const std::string& digest) const {
+  if (digest == file.digest) return;
   throw Error(ErrorKind::bad_file,
               path_of(file.name) + ": is damaged: its checksum is not that in " + site_manifest);
+}
+
+std::string SiteFolder::read(const StoredFile& file) const {
+  require_name(file);
+  std::string content = read(file.name);
+  require_same(file, checksum_text(content));
+  return content;
+}
+
+void SiteFolder::require_stored(const StoredFile& file) const {
+  require_name(file);
+  require_same(file, stored(file.name).digest);
 }
 
 StoredFile SiteFolder::write(const std::string& name, const std::string& content) const {
@@ -122,7 +136,11 @@ void SiteFolder::clear(const std::string& name) const {
 }
 
 StoredFile SiteFolder::stored(const std::string& name) const {
-  return {name, checksum_text(read(name))};
+  constexpr std::uint64_t most = std::uint64_t{1} << 20;
+  const InputFile file(path_of(name), false);
+  std::string head(std::min(file.size(), most), '\0');
+  file.read(0, head.data(), head.size());
+  return {name, checksum_text(head)};
 }
 
 void SiteFolder::rename(const std::string& from, const std::string& to) const {

@@ -39,11 +39,13 @@ class SiteFolder {
   std::string read(const std::string& name) const;
   /// @throws Error (bad_file) also if it is not the content that was stored
   std::string read(const StoredFile& file) const;
-  void require_stored(const StoredFile& file) const { read(file); }
+  /// The same of a file of stored(), of which only the head is read.
+  void require_stored(const StoredFile& file) const;
   StoredFile write(const std::string& name, const std::string& content) const;
   /// Makes way for a file that is written by others.
   void clear(const std::string& name) const;
-  /// One that others have written.
+  /// One that others have written, with the checksum of its first MiB: a ground file has the
+  /// checksum of all its numbers there, which load_ground() compares.
   StoredFile stored(const std::string& name) const;
   /// Gives a file the name of another, which it replaces.
   void rename(const std::string& from, const std::string& to) const;
@@ -53,6 +55,8 @@ class SiteFolder {
 
  private:
   void lock();
+  void require_name(const StoredFile& file) const;
+  void require_same(const StoredFile& file, const std::string& digest) const;
 
   std::string path_;
   int lock_ = -1;  ///< descriptor of the file whose lock this process holds
