@@ -86,9 +86,7 @@ void bind_ground_state(py::module_& module, py::class_<GroundState>& state) {
       "Reads a file of save_ground(); with a soil also a JSON that names ESRI ASCII grids.");
   module.def(
       "save_ground",
-      [](const File& file, const GroundState& known) {
-        call([&] { save_ground(file.path, known); });
-      },
+      [](const File& file, const GroundState& known) { save_ground(file.path, known); },
       arg("file"), arg("state"),
       "Writes a state whole or not at all, as a GeoTIFF; every number comes back as it was.");
   module.def(

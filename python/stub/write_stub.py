@@ -68,7 +68,7 @@ def argument_type(function, name, text):
     text = re.sub(r"\bGroundDensity\b", "Union[GroundDensity, float]", text)
     if function == "dig":  # which simulators override
         return text
-    return re.sub(r"\bTerrain\b", "Union[Terrain, HeightMap]", text)
+    return re.sub(r"\bTerrain\b", "Union[Terrain, HeightMap, GroundState]", text)
 
 
 def split(text):

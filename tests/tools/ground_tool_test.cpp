@@ -95,7 +95,7 @@ TEST_F(Tools, RunExperimentBeginsOnTheGround) {
   EXPECT_EQ(result.at("conditions").at(0).at("density_percent"), 40.0);
   EXPECT_EQ(result.at("ground_state").at("bank_density_percent"), nullptr);
   const GroundState after = load_ground(out, loam());
-  EXPECT_LT(after.terrain.surface().z.minCoeff(), -0.1);
+  EXPECT_LT(after.terrain.surface().z.minCoeff(), -0.05);
   EXPECT_GT(after.terrain.surface().z.maxCoeff(), 0.1);
   EXPECT_NEAR(*bank_density_percent(after.terrain, loam(), {4.0, -0.5, 6.0, 0.5}), 90.0, 1e-9);
 }
