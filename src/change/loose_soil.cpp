@@ -51,8 +51,12 @@ class CutReader {
     const double sd = std::sqrt(area_.variance(cell.row, cell.col));
     if (in_hole && loose > 0.0) cut.loose = taken_of(loose, fall, sd);
     const double bank = fall - cut.loose;
-    cut.fallen = std::max(0.0, cut.bank - bank);  // a cell at the edge of the bucket
-    if (in_hole) cut.bank = std::max(cut.bank, bank);
+    if (cut.swept > 0.0) {  // a cell at the edge of the bucket
+      cut.fallen = std::max(0.0, cut.bank - bank);
+      if (in_hole) cut.bank = std::max(cut.bank, bank);
+    } else {
+      cut.bank = bank;
+    }
     cut.reached = cut.loose == loose;
     return cut;
   }
@@ -126,7 +130,7 @@ void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& c
     if (one.swept > 0.0 && std::isnan(one.fallen)) cut.unseen_area += cell_area;
     cut.swept_area += cell_area * one.swept;
     if (std::isnan(one.fallen)) return;
-    cut.loose += cell_area * one.loose;
+    cut.loose.value += cell_area * one.loose;
     cut.fallen += cell_area * one.fallen;
     swelling += cell_area * one.loose * value_at(known.swelling, at, 0.0);
     const double fall = reader.is_in_hole(at) ? -area.ground.difference(at.row, at.col) : 0.0;
@@ -135,12 +139,11 @@ void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& c
     reached += cell_area;
     variance += std::pow(cell_area * value_at(known.loose_sd, at, 0.0), 2);
   });
-  cut.loose_sd = std::sqrt(variance + std::pow(reached * known.common_sd, 2));
+  cut.loose.sd = std::sqrt(variance + std::pow(reached * known.common_sd, 2));
   change.before.value += beyond;
   change.after.value += beyond - swelling;
-  const Eigen::Vector3d both(cut.loose_sd, 0.0, cut.loose_sd);
+  const Eigen::Vector3d both(cut.loose.sd, 0.0, cut.loose.sd);
   change.errors.loose += both * both.transpose();
-  cut.bank = change.before.value;  // with what the ground around says of its error
   change.cut = cut;
 }
 

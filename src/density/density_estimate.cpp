@@ -170,12 +170,12 @@ std::optional<Warning> doubt_of(const KnownCut& cut) {
   constexpr double most_below = 0.1;  // ours: of the bank cut
   constexpr double most_left = 0.7;   // ours: of all that was cut
   const double error = 3.0 * known_tracking_sd * cut.swept_area;
-  const bool is_below = cut.fallen < -most_below * cut.bank - error;
-  const bool is_filled = cut.fallen > most_left * (cut.bank + cut.loose) + error;
+  const bool is_below = cut.fallen < -most_below * cut.bank.value - error;
+  const bool is_filled = cut.fallen > most_left * (cut.bank.value + cut.loose.value) + error;
   const bool is_unseen = cut.unseen_area > 0.5 * cut.swept_area;
-  if (cut.bank > 0.0 && !is_below && !is_filled && !is_unseen) return std::nullopt;
+  if (cut.bank.value > 0.0 && !is_below && !is_filled && !is_unseen) return std::nullopt;
   return Warning{WarningCode::dug_path_doubtful,
-                 "along the path that was dug the bucket swept " + readable(cut.bank) +
+                 "along the path that was dug the bucket swept " + readable(cut.bank.value) +
                      " m^3 of bank and " + readable(cut.fallen) +
                      " m^3 of soil lie on its floor: the dig stalled or was not along this path, "
                      "or scans and ground are not in the site frame; the path is not used"};
@@ -223,7 +223,10 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   for (const Warning& warning : change.warnings) {
     if (warning.code == WarningCode::sensor_place_doubtful) doubts.insert(doubts.begin(), warning);
   }
-  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  // In known ground a hole of loose soil does not swell.
+  if (!options.ground) {
+    with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  }
   state_water(surfaces.pairs(), change);
   return volumes;
 }

@@ -222,10 +222,10 @@ void add_cut(const DigPath& path, const Machine& machine, const HeightMap& befor
 
 Fallback fallback_in(const KnownCut& cut) {
   Fallback fallback;
-  fallback.cut = cut.bank;
+  fallback.cut = cut.bank.value;
   fallback.in_pit = cut.fallen;
-  fallback.fraction.value = std::clamp(cut.fallen / cut.bank, 0.0, 1.0);
-  fallback.fraction.sd = known_tracking_sd * cut.swept_area / cut.bank;
+  fallback.fraction.value = std::clamp(cut.fallen / cut.bank.value, 0.0, 1.0);
+  fallback.fraction.sd = known_tracking_sd * cut.swept_area / cut.bank.value;
   fallback.seen_share =
       cut.swept_area > 0.0 ? std::max(0.0, 1.0 - cut.unseen_area / cut.swept_area) : 0.0;
   return fallback;
