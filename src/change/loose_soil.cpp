@@ -14,6 +14,7 @@ namespace excavplan {
 namespace {
 
 constexpr double sure = 2.0;          // ours: deviations that make a change one
+constexpr double swelling_sd = 0.01;  // ours: of loose soil that is dug again, of its volume
 constexpr double whole = 1.0 - 1e-9;  // of a cell
 
 double value_at(const Eigen::ArrayXXd& layer, Cell at, double without) {
@@ -105,6 +106,7 @@ void require_known_ground(const KnownGround& known, const HeightMap& before) {
 }
 
 void find_loose_soil(const KnownGround& known, Area& area) {
+  area.is_cut_told = known.cut.size() > 0;
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for_each_cell(area.ground.zone, [&](Cell at) {
     const int zone = area.ground.zone(at.row, at.col);
@@ -142,6 +144,8 @@ void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& c
   cut.loose.sd = std::sqrt(variance + std::pow(reached * known.common_sd, 2));
   change.before.value += beyond;
   change.after.value += beyond - swelling;
+  const double swollen = swelling_sd * std::max(0.0, cut.loose.value);
+  change.errors.loose(2, 2) += swollen * swollen;
   const Eigen::Vector3d both(cut.loose.sd, 0.0, cut.loose.sd);
   change.errors.loose += both * both.transpose();
   change.cut = cut;

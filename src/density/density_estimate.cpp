@@ -16,6 +16,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "change/cover.hpp"
+#include "density/density_in_soil.hpp"
 #include "density/density_of_volumes.hpp"
 #include "density/known_site.hpp"
 #include "ground/too_few_cells.hpp"
@@ -199,6 +200,7 @@ SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOp
     if (!doubt) return volumes;
     volumes.known->cut = volumes.known->cover = {};
   }
+  volumes.known->common_sd = untold_loose_sd;
   volumes.change = change_of(surfaces, &*volumes.known, options.change);
   if (doubt) volumes.change.warnings.push_back(*doubt);
   return volumes;
@@ -321,6 +323,7 @@ double shared_share(const VolumeChange& change) {
 /// Little bank in the cut says little of its density.
 void judge_bank(DensityEstimate& estimate) {
   constexpr double least = 1.0 / 3.0;  // ours
+  if (!estimate.change.cut) return;  // the paper's volumes
   const KnownCut& cut = *estimate.change.cut;
   if (!estimate.density || cut.bank_share() >= least) return;
   estimate.warnings.emplace_back(
@@ -435,7 +438,6 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
   if (options.ground) {
-    known.ground_after = ground_after(options, surfaces.dig.surfaces, surface, *volumes.known);
     known.shared_with_before = shared_share(surface);
   }
 
@@ -452,7 +454,13 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);
     if (!estimate.bulking) set_density_by_solids(estimate, laws, options);
-    if (estimate.change.cut) judge_bank(estimate);
+    if (options.ground) {
+      judge_bank(estimate);
+      const double expected =
+          expected_fallback(laws.law, estimate.density ? estimate.density->percent : 50.0);
+      estimate.ground_after = ground_after(
+          options, {surfaces.dig.surfaces, surface, *volumes.known, expected});
+    }
     judge_scans(estimate);
   }
   return results;
