@@ -326,6 +326,7 @@ class SlideBack {
 /// Of a heap whose soil slid back over the rim of the hole.
 void warn_of_slide(const Area& area, VolumeChange& change) {
   constexpr double noted = 0.03;  // ours, of the bulking factor
+  if (area.is_cut_told) return;   // nothing is hidden
   const double before = change.before.value;
   const double after = change.after.value;
   if (!(before > 0.0 && after > 0.0)) return;

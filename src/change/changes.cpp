@@ -304,7 +304,8 @@ class ChangeReader {
 
   /// More than digs spill beside the hole, where the heap lies elsewhere, may be a berm.
   Meaning meaning_of_spill(Place p) const {
-    if (heap_ && zone(p).volume > largest_spill * hole_volume()) {
+    const bool may_be_berm = !areas_[p.area].is_cut_told;
+    if (may_be_berm && heap_ && zone(p).volume > largest_spill * hole_volume()) {
       return {ChangeKind::spill, "a ridge beside the hole", prior::large_spill, false};
     }
     return {ChangeKind::spill, "spill beside the hole", certain, true};

@@ -14,6 +14,7 @@ namespace excavplan {
 namespace {
 
 constexpr double sure = 2.0;          // ours: deviations that make a change one
+constexpr double swelling_sd = 0.01;  // ours: of loose soil that is dug again, of its volume
 constexpr double whole = 1.0 - 1e-9;  // of a cell
 
 double value_at(const Eigen::ArrayXXd& layer, Cell at, double without) {
@@ -51,8 +52,12 @@ class CutReader {
     const double sd = std::sqrt(area_.variance(cell.row, cell.col));
     if (in_hole && loose > 0.0) cut.loose = taken_of(loose, fall, sd);
     const double bank = fall - cut.loose;
-    cut.fallen = std::max(0.0, cut.bank - bank);  // a cell at the edge of the bucket
-    if (in_hole) cut.bank = std::max(cut.bank, bank);
+    if (cut.swept > 0.0) {  // a cell at the edge of the bucket
+      cut.fallen = std::max(0.0, cut.bank - bank);
+      if (in_hole) cut.bank = std::max(cut.bank, bank);
+    } else {
+      cut.bank = bank;
+    }
     cut.reached = cut.loose == loose;
     return cut;
   }
@@ -101,6 +106,7 @@ void require_known_ground(const KnownGround& known, const HeightMap& before) {
 }
 
 void find_loose_soil(const KnownGround& known, Area& area) {
+  area.is_cut_told = known.cut.size() > 0;
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for_each_cell(area.ground.zone, [&](Cell at) {
     const int zone = area.ground.zone(at.row, at.col);
@@ -126,7 +132,7 @@ void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& c
     if (one.swept > 0.0 && std::isnan(one.fallen)) cut.unseen_area += cell_area;
     cut.swept_area += cell_area * one.swept;
     if (std::isnan(one.fallen)) return;
-    cut.loose += cell_area * one.loose;
+    cut.loose.value += cell_area * one.loose;
     cut.fallen += cell_area * one.fallen;
     swelling += cell_area * one.loose * value_at(known.swelling, at, 0.0);
     const double fall = reader.is_in_hole(at) ? -area.ground.difference(at.row, at.col) : 0.0;
@@ -135,12 +141,13 @@ void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& c
     reached += cell_area;
     variance += std::pow(cell_area * value_at(known.loose_sd, at, 0.0), 2);
   });
-  cut.loose_sd = std::sqrt(variance + std::pow(reached * known.common_sd, 2));
+  cut.loose.sd = std::sqrt(variance + std::pow(reached * known.common_sd, 2));
   change.before.value += beyond;
   change.after.value += beyond - swelling;
-  const Eigen::Vector3d both(cut.loose_sd, 0.0, cut.loose_sd);
+  const double swollen = swelling_sd * std::max(0.0, cut.loose.value);
+  change.errors.loose(2, 2) += swollen * swollen;
+  const Eigen::Vector3d both(cut.loose.sd, 0.0, cut.loose.sd);
   change.errors.loose += both * both.transpose();
-  cut.bank = change.before.value;  // with what the ground around says of its error
   change.cut = cut;
 }
 

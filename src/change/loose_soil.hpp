@@ -16,7 +16,7 @@ namespace excavplan {
 /// @throws Error (bad_input) unless each layer is empty or as large as the map
 void require_known_ground(const KnownGround& known, const HeightMap& before);
 
-/// Sets ZoneSum::loose of each zone that fell.
+/// Sets ZoneSum::loose of each zone that fell, and whether the cut is told.
 void find_loose_soil(const KnownGround& known, Area& area);
 
 /// Makes `before` the bank that was cut and `after` its volume since, with the error of the loose

@@ -204,6 +204,7 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   state_open_changes(areas, attribution, change);
   if (known == nullptr) state_earlier_soil(before, areas, change);
   set_deviations(change);
+  if (change.cut) change.cut->bank = change.before;
   warn_of_zones(areas, options, change);
   for (Area& area : areas) report(area, change);
   return change;

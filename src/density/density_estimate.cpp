@@ -16,6 +16,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "change/cover.hpp"
+#include "density/density_in_soil.hpp"
 #include "density/density_of_volumes.hpp"
 #include "density/known_site.hpp"
 #include "ground/too_few_cells.hpp"
@@ -170,12 +171,12 @@ std::optional<Warning> doubt_of(const KnownCut& cut) {
   constexpr double most_below = 0.1;  // ours: of the bank cut
   constexpr double most_left = 0.7;   // ours: of all that was cut
   const double error = 3.0 * known_tracking_sd * cut.swept_area;
-  const bool is_below = cut.fallen < -most_below * cut.bank - error;
-  const bool is_filled = cut.fallen > most_left * (cut.bank + cut.loose) + error;
+  const bool is_below = cut.fallen < -most_below * cut.bank.value - error;
+  const bool is_filled = cut.fallen > most_left * (cut.bank.value + cut.loose.value) + error;
   const bool is_unseen = cut.unseen_area > 0.5 * cut.swept_area;
-  if (cut.bank > 0.0 && !is_below && !is_filled && !is_unseen) return std::nullopt;
+  if (cut.bank.value > 0.0 && !is_below && !is_filled && !is_unseen) return std::nullopt;
   return Warning{WarningCode::dug_path_doubtful,
-                 "along the path that was dug the bucket swept " + readable(cut.bank) +
+                 "along the path that was dug the bucket swept " + readable(cut.bank.value) +
                      " m^3 of bank and " + readable(cut.fallen) +
                      " m^3 of soil lie on its floor: the dig stalled or was not along this path, "
                      "or scans and ground are not in the site frame; the path is not used"};
@@ -199,6 +200,7 @@ SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOp
     if (!doubt) return volumes;
     volumes.known->cut = volumes.known->cover = {};
   }
+  volumes.known->common_sd = untold_loose_sd;
   volumes.change = change_of(surfaces, &*volumes.known, options.change);
   if (doubt) volumes.change.warnings.push_back(*doubt);
   return volumes;
@@ -223,7 +225,10 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   for (const Warning& warning : change.warnings) {
     if (warning.code == WarningCode::sensor_place_doubtful) doubts.insert(doubts.begin(), warning);
   }
-  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  // In known ground a hole of loose soil does not swell.
+  if (!options.ground) {
+    with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  }
   state_water(surfaces.pairs(), change);
   return volumes;
 }
@@ -318,6 +323,7 @@ double shared_share(const VolumeChange& change) {
 /// Little bank in the cut says little of its density.
 void judge_bank(DensityEstimate& estimate) {
   constexpr double least = 1.0 / 3.0;  // ours
+  if (!estimate.change.cut) return;  // the paper's volumes
   const KnownCut& cut = *estimate.change.cut;
   if (!estimate.density || cut.bank_share() >= least) return;
   estimate.warnings.emplace_back(
@@ -432,7 +438,6 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
   if (options.ground) {
-    known.ground_after = ground_after(options, surfaces.dig.surfaces, surface, *volumes.known);
     known.shared_with_before = shared_share(surface);
   }
 
@@ -449,7 +454,13 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);
     if (!estimate.bulking) set_density_by_solids(estimate, laws, options);
-    if (estimate.change.cut) judge_bank(estimate);
+    if (options.ground) {
+      judge_bank(estimate);
+      const double expected =
+          expected_fallback(laws.law, estimate.density ? estimate.density->percent : 50.0);
+      estimate.ground_after = ground_after(
+          options, {surfaces.dig.surfaces, surface, *volumes.known, expected});
+    }
     judge_scans(estimate);
   }
   return results;

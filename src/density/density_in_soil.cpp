@@ -200,10 +200,7 @@ class SolidsReader {
   /// Soil on the floor that the law expects [m^3]; 0 where the floor is known.
   double fallback_at(double density) const {
     if (change_.cut->swept_area > 0.0) return 0.0;
-    const double d = std::clamp(density, 0.0, 100.0);
-    const double freed = bulking_of_density(law_.freed_form, d);
-    const double seen = bulking_of_density(law_.form, d);
-    const double share = std::clamp((freed - seen) / (1.0 - seen), 0.0, 0.5);
+    const double share = expected_fallback(law_, density);
     return share / (1.0 - share) * change_.before.value;
   }
 
@@ -365,6 +362,15 @@ DensityInSoil density_in(const DensityLaw& given, const SoilKind* soil, const Du
   answer.found.evidence *=
       normal_cdf((100.0 - density.raw_percent) / sd) - normal_cdf(-density.raw_percent / sd);
   return answer.found;
+}
+
+double expected_fallback(const DensityLaw& law, double density_percent) {
+  constexpr double most = 0.5;  // ours
+  const double d = std::clamp(density_percent, 0.0, 100.0);
+  const double freed = bulking_of_density(law.freed_form, d);
+  const double seen = bulking_of_density(law.form, d);
+  const double share = (freed - seen) / (1.0 - seen);
+  return std::isfinite(share) ? std::clamp(share, 0.0, most) : 0.0;
 }
 
 DensityInSoil density_by_solids(const DensityLaw& law, const SoilKind& soil,

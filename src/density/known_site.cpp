@@ -99,17 +99,36 @@ void fill_between_points(SeenGround& seen) {
   seen.surface.z = (map.z.isNaN() && seen.obstacles.isNaN()).select(filled, map.z);
 }
 
+/// Top of the bank that the bucket left: by what it cut, or below the hole that is seen by the soil
+/// that is expected to have fallen back.
+Eigen::ArrayXXd bank_left(const DigInGround& dig) {
+  const Eigen::ArrayXXd bank = dig.surfaces.before.height.z - dig.known.loose;
+  if (dig.known.cut.size() > 0) {
+    return (dig.known.cut > 0.0).select(bank - dig.known.cut, std::nan(""));
+  }
+  const AreaChange& area = dig.change.areas.front();
+  Eigen::ArrayXXd left = Eigen::ArrayXXd::Constant(bank.rows(), bank.cols(), std::nan(""));
+  for_each_cell(left, [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    if (zone < 0 || dig.change.zones[static_cast<std::size_t>(zone)].kind != ZoneKind::dig) return;
+    const double seen = -area.difference.z(at.row, at.col) - dig.known.loose(at.row, at.col);
+    if (seen > area.noise_sd) {
+      left(at.row, at.col) = bank(at.row, at.col) - seen / (1.0 - dig.fallback);
+    }
+  });
+  return left;
+}
+
 /// The survey after a dig, in the heights of the known ground.
-SeenGround seen_after(const SurfacePair& surfaces, const VolumeChange& change,
-                      const KnownGround& known, double offset) {
-  const AreaChange& area = change.areas.front();
-  const HeightMap& before = surfaces.before.height;
+SeenGround seen_after(const DigInGround& dig, double offset) {
+  const AreaChange& area = dig.change.areas.front();
+  const HeightMap& before = dig.surfaces.before.height;
   SeenGround seen;
-  seen.surface = realigned(surfaces.after.height, surfaces.alignment);
+  seen.surface = realigned(dig.surfaces.after.height, dig.surfaces.alignment);
   seen.surface.z = area.difference.z.isNaN().select(seen.surface.z - area.datum,
                                                     before.z + area.difference.z);
   const double stable = 0.5 * area.noise_sd * area.noise_sd;
-  const Eigen::ArrayXXd& own = surfaces.after.variance;
+  const Eigen::ArrayXXd& own = dig.surfaces.after.variance;
   seen.deviation.setConstant(before.z.rows(), before.z.cols(), stable);
   if (own.size() > 0) seen.deviation = (own > stable).select(own, stable);
   seen.deviation = seen.deviation.sqrt();
@@ -117,20 +136,17 @@ SeenGround seen_after(const SurfacePair& surfaces, const VolumeChange& change,
   seen.obstacles.setConstant(before.z.rows(), before.z.cols(), std::nan(""));
   for_each_cell(area.zone, [&](Cell at) {
     const int zone = area.zone(at.row, at.col);
-    seen.changed(at.row, at.col) = cause_of(change, zone);
+    seen.changed(at.row, at.col) = cause_of(dig.change, zone);
     double& height = seen.surface.z(at.row, at.col);
     height += offset;
     const bool is_thing = zone >= 0 && std::isnan(area.difference.z(at.row, at.col)) &&
-                          change.zones[static_cast<std::size_t>(zone)].unknown_share >= 1.0;
+                          dig.change.zones[static_cast<std::size_t>(zone)].unknown_share >= 1.0;
     if (!is_thing) return;
     const double rise = height - offset - before.z(at.row, at.col);
     if (rise > in_the_way) seen.obstacles(at.row, at.col) = height;
     height = std::nan("");
   });
-  if (known.cut.size() > 0) {
-    const Eigen::ArrayXXd left = before.z - known.loose - known.cut + offset;
-    seen.swept = (known.cut > 0.0).select(left, std::nan(""));
-  }
+  seen.swept = bank_left(dig) + offset;
   fill_between_points(seen);
   return seen;
 }
@@ -222,25 +238,23 @@ void add_cut(const DigPath& path, const Machine& machine, const HeightMap& befor
 
 Fallback fallback_in(const KnownCut& cut) {
   Fallback fallback;
-  fallback.cut = cut.bank;
+  fallback.cut = cut.bank.value;
   fallback.in_pit = cut.fallen;
-  fallback.fraction.value = std::clamp(cut.fallen / cut.bank, 0.0, 1.0);
-  fallback.fraction.sd = known_tracking_sd * cut.swept_area / cut.bank;
+  fallback.fraction.value = std::clamp(cut.fallen / cut.bank.value, 0.0, 1.0);
+  fallback.fraction.sd = known_tracking_sd * cut.swept_area / cut.bank.value;
   fallback.seen_share =
       cut.swept_area > 0.0 ? std::max(0.0, 1.0 - cut.unseen_area / cut.swept_area) : 0.0;
   return fallback;
 }
 
-GroundState ground_after(const DensityOptions& options, const SurfacePair& surfaces,
-                         const VolumeChange& change, const KnownGround& known) {
-  const double offset = offset_of(*options.ground, surfaces, change.areas.front());
-  SeenGround seen = seen_after(surfaces, change, known, offset);
-  seen.time = options.scan_time;
+GroundState ground_after(const DensityOptions& options, const DigInGround& dig) {
+  const double offset = offset_of(*options.ground, dig.surfaces, dig.change.areas.front());
+  SeenGround before = seen_before(*options.ground, dig.surfaces.before, offset);
+  SeenGround after = seen_after(dig, offset);
+  before.time = after.time = options.scan_time;
   std::optional<double> loose;
   if (options.soil.kind) loose = options.soil.kind->void_ratio_loose;
-  SeenGround before = seen_before(*options.ground, surfaces.before, offset);
-  before.time = options.scan_time;
-  return updated_ground(updated_ground(*options.ground, before), seen, loose);
+  return updated_ground(updated_ground(*options.ground, before), after, loose);
 }
 
 }  // namespace excavplan

@@ -17,6 +17,10 @@
 
 namespace excavplan {
 
+/// Deviation of loose soil in all cells alike where no path tells how much of it fell back, in this
+/// dig and, as far as anyone knows, in those before [m]; ours.
+inline constexpr double untold_loose_sd = 0.02;
+
 /// Standard deviation of the height of a driven path, in known ground [m]; ours.
 inline constexpr double known_tracking_sd = 0.02;
 
@@ -41,8 +45,15 @@ void add_cut(const DigPath& path, const Machine& machine, const HeightMap& befor
 /// @return nothing where the cut has no bank
 Fallback fallback_in(const KnownCut& cut);
 
-/// The ground after the dig. @param surfaces  of the dig, registered
-GroundState ground_after(const DensityOptions& options, const SurfacePair& surfaces,
-                         const VolumeChange& change, const KnownGround& known);
+/// A dig in known ground.
+struct DigInGround {
+  const SurfacePair& surfaces;  ///< of the dig, registered
+  const VolumeChange& change;
+  const KnownGround& known;
+  double fallback = 0.0;  ///< share of the cut that is expected on its floor, if that is not told
+};
+
+/// The ground after the dig.
+GroundState ground_after(const DensityOptions& options, const DigInGround& dig);
 
 }  // namespace excavplan

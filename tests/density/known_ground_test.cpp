@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/change/ground_update.hpp>
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/soil/density_law.hpp>
@@ -102,7 +103,7 @@ class SurveyedSeries {
       options.dug_path = DugPath{series_.machine(), dig->path.parameters, dig->path.start_x,
                                  dig->path.ground_z};
     }
-    Answer answer{*dig, estimate_density(scans, density_law_of(series_.soil()), options),
+    Answer answer{*dig, estimate_density(scans, law(), options),
                   settings_.density_percent};
     known_ = series_.in_site(*answer.estimate.ground_after);
     if (std::getenv("DEBUG_BANK")) {
@@ -139,6 +140,11 @@ class SurveyedSeries {
     return answer;
   }
 
+  /// Without the path what falls back is that of the law.
+  DensityLaw law() const {
+    return surveying_.path_is_told ? density_law_of(series_.soil())
+                                   : load_density_law(find_data_file("laws/zx120-loam.json"));
+  }
   const GroundState& known() const { return known_; }
   DigSeries& series() { return series_; }
 
@@ -163,8 +169,8 @@ void print(const SurveyedSeries::Answer& answer, const std::string& where) {
   std::cout << where << " d " << answer.truth << " found "
             << (e.density ? e.density->raw_percent : -1.0) << " sd "
             << (e.density ? e.density->sd_percent : -1.0) << " k "
-            << (e.bulking ? e.bulking->value : 0.0) << " B " << e.change.cut->bank << " true "
-            << answer.dig.bank_cut << " L " << e.change.cut->loose << " F "
+            << (e.bulking ? e.bulking->value : 0.0) << " B " << e.change.cut->bank.value << " true "
+            << answer.dig.bank_cut << " L " << e.change.cut->loose.value << " F "
             << e.change.cut->fallen << " share " << e.change.cut->bank_share() << " shared "
             << e.shared_with_before << (answer.is_trusted() ? " T" : " -")
             << (answer.is_inside() ? "I" : "o") << codes(e) << "\n";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/dig_series.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -16,6 +17,7 @@
 namespace excavplan::test {
 namespace {
 
+constexpr double deepest = 1.0;  // of a hole [m]
 constexpr Rectangle site_extent = {-4.0, -11.0, 13.0, 9.0};
 
 double waves(double x, double y, double roughness, std::uint64_t seed) {
@@ -87,7 +89,7 @@ void DigSeries::move() {
 }
 
 std::optional<DigPath> DigSeries::path_for_next() {
-  constexpr int tries = 20;
+  constexpr int tries = 60;
   const GroundProfile profile = boom_plane_profile(ground());
   const double weaker = 1.0 - 0.005 * settings_.density_percent;
   for (int i = 0; i < tries; ++i) {
@@ -96,7 +98,10 @@ std::optional<DigPath> DigSeries::path_for_next() {
                                       random_.uniform(0.8, 2.0)};
     const double start = 6.8 + random_.uniform(-0.2, 0.2);
     const auto path = make_dig_path(machine_, parameters, start, profile);
-    if (std::holds_alternative<DigPath>(path)) return std::get<DigPath>(path);
+    if (!std::holds_alternative<DigPath>(path)) continue;
+    const auto& poses = std::get<DigPath>(path).poses;
+    const auto is_deep = [](const DigPose& pose) { return pose.bucket.z < -deepest; };
+    if (std::none_of(poses.begin(), poses.end(), is_deep)) return std::get<DigPath>(path);
   }
   return std::nullopt;
 }

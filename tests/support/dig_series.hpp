@@ -35,7 +35,7 @@ struct SeriesSettings {
   std::uint64_t seed = 1;
   double noise = 0.005;           ///< of every coordinate of a point [m]
   double roughness = 0.008;       ///< of the ground before the first dig, rms [m]
-  double points_per_m2 = 1000.0;  ///< of a scan
+  double points_per_m2 = 2500.0;  ///< of a scan
   double cell = 0.05;             ///< of the simulated ground [m]
   bool heap_in_sight = true;      ///< else the soil goes out of sight
 };

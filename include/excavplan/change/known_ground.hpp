@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <excavplan/base/measured.hpp>
+
 /// @file
 /// What is known of the ground before a dig beside its surface, for measure_change(): its loose soil
 /// and what the bucket cut (docs/methods.md#known-ground).
@@ -24,15 +26,17 @@ struct KnownGround {
 
 /// What was cut, by the surfaces and the known ground [m^3].
 struct KnownCut {
-  double loose = 0.0;        ///< loose soil that was dug again
-  double loose_sd = 0.0;     ///< its standard deviation
-  double bank = 0.0;         ///< undisturbed soil that was cut, with what is hidden by `fallen`
+  Measured loose;            ///< loose soil that was dug again
+  Measured bank;             ///< undisturbed soil that was cut, with what is hidden by `fallen`
   double fallen = 0.0;       ///< loose soil above the floor that was swept; 0 where it is not told
   double swept_area = 0.0;   ///< of it where bank was cut [m^2]
   double unseen_area = 0.0;  ///< and of that what one of the surfaces does not show [m^2]
 
   /// Share of bank in what was cut, by volume [-].
-  double bank_share() const { return bank > 0.0 ? bank / (bank + (loose > 0.0 ? loose : 0.0)) : 0.0; }
+  double bank_share() const {
+    if (!(bank.value > 0.0)) return 0.0;
+    return loose.value > 0.0 ? bank.value / (bank.value + loose.value) : 1.0;
+  }
 };
 
 }  // namespace excavplan
