@@ -6,14 +6,15 @@ cmake_minimum_required(VERSION 3.24)
 
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
-set(rooms base optimisation ground change soil machine simulation sensing calibration planning kit
-  clouds scans logs efficiency images recording density paper experiments results maps drawing figures
-  robot)
+set(rooms base optimisation ground change soil belief machine simulation sensing calibration planning
+  kit clouds scans logs efficiency images recording density site paper experiments results maps drawing
+  figures robot)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
 set(change_may_use ground)
 set(soil_may_use ground)
+set(belief_may_use optimisation ground soil)
 set(machine_may_use "")
 set(simulation_may_use ground soil machine)
 set(sensing_may_use ground change soil machine simulation)
@@ -27,6 +28,7 @@ set(efficiency_may_use ground change clouds scans logs)
 set(images_may_use clouds scans)
 set(recording_may_use clouds scans images)
 set(density_may_use ground change soil machine simulation calibration scans logs)
+set(site_may_use ground change soil belief machine simulation scans density)
 set(paper_may_use change clouds scans density)
 set(experiments_may_use
   ground change soil machine simulation sensing calibration planning scans density)
@@ -36,7 +38,8 @@ set(maps_may_use ground change simulation sensing planning)
 set(drawing_may_use ground machine)
 set(figures_may_use
   change soil machine simulation sensing planning kit density efficiency experiments results drawing)
-set(robot_may_use ground soil machine simulation planning kit clouds scans recording density results)
+set(robot_may_use ground soil machine simulation planning kit clouds scans recording density site
+  results)
 
 # The rooms of the tools; what lies in the folder of a tool is its own.
 set(tool_rooms frame report inputs)

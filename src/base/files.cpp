@@ -154,8 +154,8 @@ class OutputFile {
   bool is_removed_ = false;
 };
 
-void write(const std::string& path, const ContentSource& content, bool is_flushed) {
-  const Place place = place_of(path);
+void write(const Place& place, const std::string& path, const ContentSource& content,
+           bool is_flushed) {
   OutputFile file(place);
   if (!file.is_open()) fail_to_write(path, errno);
   content([&](std::string_view part) {
@@ -186,10 +186,7 @@ bool is_pipe(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
 }
 
-}  // namespace
-
-std::string read_file(const std::string& path, std::uint64_t most_bytes) {
-  const InputFile file(path);
+std::string content_of(const InputFile& file, std::uint64_t most_bytes) {
   if (file.size() > most_bytes) {
     file.refuse("found " + std::to_string(file.size()) + " bytes, expected at most " +
                 std::to_string(most_bytes));
@@ -200,16 +197,30 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes) {
   return content;
 }
 
+}  // namespace
+
+std::string read_file(const std::string& path, std::uint64_t most_bytes) {
+  return content_of(InputFile(path), most_bytes);
+}
+
+std::string read_own_file(const std::string& path, std::uint64_t most_bytes) {
+  return content_of(InputFile(path, false), most_bytes);
+}
+
 void write_journal(const std::string& path, const std::string& content) {
-  write(path, in_one_part(content), false);
+  write(place_of(path), path, in_one_part(content), false);
 }
 
 void write_file(const std::string& path, const std::string& content) {
-  write(path, in_one_part(content), true);
+  write(place_of(path), path, in_one_part(content), true);
+}
+
+void write_own_file(const std::string& path, const std::string& content) {
+  write(Place{path}, path, in_one_part(content), true);
 }
 
 void write_file(const std::string& path, const ContentSource& content) {
-  write(path, content, true);
+  write(place_of(path), path, content, true);
 }
 
 std::optional<int> open_descriptor(const std::string& path) {

@@ -38,6 +38,12 @@ void write_file(const std::string& path, const ContentSource& content);
 /// loss of power, unlike a kill, may cost it.
 void write_journal(const std::string& path, const std::string& content);
 
+/// Of a folder whose files are ours alone: as write_file(), but what lies at the path is replaced
+/// whatever it is, and no link is followed.
+void write_own_file(const std::string& path, const std::string& content);
+/// As read_file(), but a link is refused.
+std::string read_own_file(const std::string& path, std::uint64_t most_bytes = most_settings_bytes);
+
 /// The file that this process has open and a path leads to, as /dev/stdout and /dev/fd/3 do.
 /// @throws Error (bad_file) if the links of the path cannot be followed
 std::optional<int> open_descriptor(const std::string& path);

@@ -14,8 +14,9 @@ namespace excavplan {
 class InputFile {
  public:
   /// Never waits on a pipe or device.
+  /// @param follows  a link that lies at the path; else it is refused
   /// @throws Error (bad_file) if the file is not regular or not readable
-  explicit InputFile(std::string path);
+  explicit InputFile(std::string path, bool follows = true);
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;

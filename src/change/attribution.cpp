@@ -15,6 +15,14 @@ constexpr double negligible = 0.0005;  // of the hole's volume; ours
 constexpr std::size_t most_open = 12;  // ours: changes that are combined
 constexpr double counted_first = 0.5;  // prior from which a change counts without balance
 
+/// Of what rose and fell, without the loose soil that was dug again. What is left where most was
+/// loose tells too little to judge by.
+double likelihood_of_balance(double before, double after, double loose) {
+  constexpr double least_bank = 1.0 / 3.0;  // of the hole; ours
+  const double taken = std::min(loose, (1.0 - least_bank) * before);
+  return likelihood_of_bulking((after - taken) / (before - taken));
+}
+
 /// How well the soil of some changes balances; 0 without a hole that could be the dig. Where too
 /// little rose by its shape the heap is not in the scans, and there is no balance to judge by.
 double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>& counted) {
@@ -23,16 +31,19 @@ double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>
   double after = 0.0;
   double largest = 0.0;
   double rose = 0.0;
+  double loose = 0.0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (changes[i].prior >= counted_first) {
       largest = std::max(largest, -changes[i].volume);
       rose += std::max(0.0, changes[i].volume);
     }
-    if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
+    if (!counted[i]) continue;
+    (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
+    loose += changes[i].loose;
   }
   if (largest == 0.0) return 1.0;
   if (!(before > least_hole * largest)) return 0.0;
-  return rose < least_after_share * largest ? 1.0 : likelihood_of_bulking(after / before);
+  return rose < least_after_share * largest ? 1.0 : likelihood_of_balance(before, after, loose);
 }
 
 /// All combinations of combined_changes(), each as likely as its shapes, places and bulking factor;

@@ -237,9 +237,10 @@ void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
                               "mistaken for stable ground; scan more of the ground around "
                               "hole and heap");
   }
-  if (ground.noise_sd > largest_noise) {
+  const double differs = std::hypot(ground.noise_sd, area.systematic_rms);
+  if (differs > largest_noise) {
     warnings.emplace_back(WarningCode::scans_do_not_fit,
-                          "ground that did not change differs by " + hundredths(ground.noise_sd) +
+                          "ground that did not change differs by " + hundredths(differs) +
                               " m between the scans (one standard deviation), more than " +
                               hundredths(largest_noise) +
                               " m: bring both scans into one frame by `before_frame` and "
@@ -325,6 +326,7 @@ class SlideBack {
 /// Of a heap whose soil slid back over the rim of the hole.
 void warn_of_slide(const Area& area, VolumeChange& change) {
   constexpr double noted = 0.03;  // ours, of the bulking factor
+  if (area.is_cut_told) return;   // nothing is hidden
   const double before = change.before.value;
   const double after = change.after.value;
   if (!(before > 0.0 && after > 0.0)) return;

@@ -317,8 +317,9 @@ class ChangeReader {
   /// Where the heap lies elsewhere, more than digs spill beside the hole may be a berm, and so may
   /// one of several ridges.
   Meaning meaning_of_spill(Place p) const {
+    const bool may_be_berm = heap_ && !areas_[p.area].is_cut_told;
     const bool is_large = zone(p).volume > largest_spill * hole_volume();
-    if (heap_ && (is_large || is_one_of_ridges(p))) {
+    if (may_be_berm && (is_large || is_one_of_ridges(p))) {
       return {ChangeKind::spill, "a ridge beside the hole", prior::large_spill, false};
     }
     return {ChangeKind::spill, "spill beside the hole", certain, true};
@@ -380,13 +381,15 @@ class ChangeReader {
         if (change.what != meaning.what || (change.volume > 0.0) != (volume > 0.0)) continue;
         change.zones.push_back(p);
         change.volume += volume;
+        change.loose += zone(p).loose;
         return;
       }
     } else if (meaning.prior < certain && !is(p, hole_)) {
       meaning.what += " around (" + hundredths(zone(p).centre.x()) + ", " +
                       hundredths(zone(p).centre.y()) + ") m";
     }
-    changes_.push_back({meaning.kind, meaning.what, {p}, volume, meaning.prior, meaning.prior});
+    changes_.push_back({meaning.kind, meaning.what, {p}, volume, zone(p).loose, meaning.prior,
+                        meaning.prior});
   }
 
   const std::vector<Area>& areas_;

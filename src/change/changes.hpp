@@ -30,6 +30,7 @@ struct Change {
   std::string what;          ///< "a second heap around (3.2, 1) m"
   std::vector<Place> zones;  ///< all of one sign
   double volume = 0.0;       ///< signed [m^3]
+  double loose = 0.0;        ///< loose soil that a fall took, part of its volume [m^3]
   double prior = 0.0;        ///< probability by shape and place that it belongs to the dig
   double probability = 0.0;  ///< likewise, with the balance of the soil
 

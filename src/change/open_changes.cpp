@@ -80,13 +80,15 @@ class OpenChanges {
 
   Alternative alternative(const Combination& one) const {
     Eigen::Vector3d more = Eigen::Vector3d::Zero();
+    double loose = 0.0;
     for (std::size_t i = 0; i < counted_.size(); ++i) {
       if (one.counted[i] == counted_[i]) continue;
       const double volume = std::abs(changes()[i].volume) * (counted_[i] ? -1.0 : 1.0);
       more += volume * role_of(changes()[i]);
+      loose += counted_[i] ? -changes()[i].loose : changes()[i].loose;
     }
-    const double before = result_.before.value + more(0);
-    const double after = result_.after.value + more(1) + more(2);
+    const double before = result_.before.value + more(0) - loose;
+    const double after = result_.after.value + more(1) + more(2) - loose;
     return {&one, more, before > 0.0 ? after / before : 0.0};
   }
 

@@ -69,17 +69,6 @@ Eigen::ArrayXXd noise_of_cells(const Eigen::ArrayXXd& variance, const Area& area
   return (variance > stable).select(variance, stable);  // also where it is NaN
 }
 
-/// Noise of the cells of each zone.
-void sum_noise(Area& area, const Eigen::ArrayXXd& noise) {
-  const double cell_area = area.grid.cell_size * area.grid.cell_size;
-  for_each_cell(area.ground.zone, [&](Cell cell) {
-    const int index = area.ground.zone(cell.row, cell.col);
-    if (index < 0 || area.unknown(cell.row, cell.col) != 0) return;
-    area.zones[static_cast<std::size_t>(index)].noise +=
-        cell_area * cell_area * noise(cell.row, cell.col);
-  });
-}
-
 /// How regularly points lie: 0 for random points, whose counts in two cells differ by the square
 /// root of their sum; towards 1 for a lattice, as of a camera.
 double regularity_of(const Surface& scan, const Eigen::ArrayXXi& zone) {
@@ -233,7 +222,28 @@ struct Scans {
   Eigen::ArrayXXd variance_of(double share) const {
     return std::pow(1.0 + share, 2) * variance_before + variance_after;
   }
+  /// Of the noise of a cell's difference, what the surface before made; half where nothing tells.
+  double share_before(Cell at) const {
+    constexpr double half = 0.5;
+    if (variance_before.size() == 0) return half;
+    const double own = variance_before(at.row, at.col);
+    const double share = own / (own + variance_after(at.row, at.col));
+    return std::isnan(share) ? half : share;
+  }
 };
+
+/// Noise of the cells of each zone.
+void sum_noise(Area& area, const Eigen::ArrayXXd& noise, const Scans& scans) {
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  for_each_cell(area.ground.zone, [&](Cell cell) {
+    const int index = area.ground.zone(cell.row, cell.col);
+    if (index < 0 || area.unknown(cell.row, cell.col) != 0) return;
+    const double own = cell_area * cell_area * noise(cell.row, cell.col);
+    ZoneSum& zone = area.zones[static_cast<std::size_t>(index)];
+    zone.noise += own;
+    zone.before += own * scans.share_before(cell);
+  });
+}
 
 /// Where nothing says where the sensor stood, the scan itself may.
 std::optional<SensorPlace> complete_place(Surface& surface) {
@@ -321,7 +331,7 @@ void sum_own_errors(Area& area, const SurfacePair& pair, const Scans& scans,
                     const Eigen::ArrayXXd& variance, const ChangeOptions& options) {
   const Eigen::ArrayXXd noise = noise_of_cells(variance, area);
   area.variance = noise + area.noise.correlated;
-  sum_noise(area, noise);
+  sum_noise(area, noise, scans);
   sum_beyond_edge(area);
   for (const Surface* surface : {&pair.before, &pair.after}) {
     sum_faces(area, *surface);

@@ -31,6 +31,8 @@ struct ZoneSum {
   double thin = 0.0;     // and by soil that is too thin to tell from noise [m^6]
   double unknown = 0.0;  // area that was filled [m^2]
   double shadow = 0.0;   // and of that in shadows under known sight lines [m^2]
+  double loose = 0.0;    // loose soil that it took from ground that is known [m^3]
+  double before = 0.0;   // of its variance by noise, what the surface before made [m^6]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Rectangle extent;
   bool is_cut = false;
@@ -53,6 +55,7 @@ struct Area {
   Eigen::ArrayXXd variance;     // of each cell's difference, without the datum [m^2]
   double systematic_rms = 0.0;  // of stripes and doming that were taken off [m]
   std::vector<Object> objects;
+  bool is_cut_told = false;  // what the bucket cut is known (KnownGround::cut)
   std::optional<SensorPlace> inferred;     // of the scan after, where nothing says it
   std::optional<PlaceDoubt> place_before;  // of the place that is said, of each scan
   std::optional<PlaceDoubt> place_after;

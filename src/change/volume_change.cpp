@@ -17,6 +17,7 @@
 #include "change/attribution.hpp"
 #include "change/change_warnings.hpp"
 #include "change/earlier_soil.hpp"
+#include "change/loose_soil.hpp"
 #include "change/open_changes.hpp"
 #include "change/strewn_soil.hpp"
 #include "change/surveyed_area.hpp"
@@ -70,6 +71,7 @@ void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
       if (kind == ZoneKind::spill) part(1, i) = 1.0;
       if (kind == ZoneKind::dump) part(2, i) = 1.0;
       volume += part.col(i) * zone.volume;
+      change.shared += zone.before * part.col(i) * part.col(i).transpose();
       change.errors.noise += zone.noise * part.col(i) * part.col(i).transpose();
       change.errors.holes += zone.holes * part.col(i) * part.col(i).transpose();
       change.errors.faces += zone.faces * part.col(i) * part.col(i).transpose();
@@ -86,6 +88,13 @@ void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
   change.dumped.value = volume(2);
   change.before.value = volume(0);
   change.after.value = volume(1) + volume(2);
+}
+
+/// What the scan before made of the errors: what both scans share alike counts by half; ours.
+void set_shared(VolumeChange& change) {
+  constexpr double half = 0.5;
+  const VolumeErrors& errors = change.errors;
+  change.shared += half * (errors.correlated + errors.datum + errors.faces);
 }
 
 /// Deviations of the volumes from the covariance by all sources.
@@ -162,7 +171,9 @@ void report(Area& area, VolumeChange& change) {
   change.areas.push_back(std::move(result));
 }
 
-VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const ChangeOptions& options) {
+/// @param known  of the first area; null: not known
+VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const ChangeOptions& options,
+                       const KnownGround* known = nullptr) {
   check(options);
   for (const SurfacePair* pair : pairs) {
     require_surface(pair->before, "surface before");
@@ -175,15 +186,25 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
     areas.push_back(survey(*pair, options));
     before.push_back(&pair->before.height);
   }
+  if (known != nullptr) {
+    require_known_ground(*known, *before.front());
+    find_loose_soil(*known, areas.front());
+  }
   const Attribution attribution = attribute(areas, options);
   VolumeChange change;
   sum_volumes(areas, change);
+  set_shared(change);
   add_strewn_soil(areas, change);
   set_deviations(change);
   warn_of_balance(change);
+  if (known != nullptr) {
+    take_loose_soil(*known, areas.front(), change);
+    set_deviations(change);
+  }
   state_open_changes(areas, attribution, change);
-  state_earlier_soil(before, areas, change);
+  if (known == nullptr) state_earlier_soil(before, areas, change);
   set_deviations(change);
+  if (change.cut) change.cut->bank = change.before;
   warn_of_zones(areas, options, change);
   for (Area& area : areas) report(area, change);
   return change;
@@ -198,6 +219,16 @@ VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& optio
 VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
                             const ChangeOptions& options) {
   return result_of({&dig, &dump}, options);
+}
+
+VolumeChange measure_change(const SurfacePair& scene, const KnownGround& known,
+                            const ChangeOptions& options) {
+  return result_of({&scene}, options, &known);
+}
+
+VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+                            const KnownGround& known, const ChangeOptions& options) {
+  return result_of({&dig, &dump}, options, &known);
 }
 
 VolumeChange measure_change(const HeightMap& before, const HeightMap& after,

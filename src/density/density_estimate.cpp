@@ -16,7 +16,9 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "change/cover.hpp"
+#include "density/density_in_soil.hpp"
 #include "density/density_of_volumes.hpp"
+#include "density/known_site.hpp"
 #include "ground/too_few_cells.hpp"
 #include "scans/scan_checks.hpp"
 #include "scans/scan_pairs.hpp"
@@ -32,6 +34,7 @@ struct OutlinedScans {
   OutlinedPair dig;
   std::optional<OutlinedPair> dump;
   double cell_size = 0.0;
+  bool stands = false;  ///< the known ground for a scan before
 
   std::string names() const { return dig.names() + (dump ? ", " + dump->names() : ""); }
   double unit() const { return dig.scans.after.unit; }
@@ -40,10 +43,23 @@ struct OutlinedScans {
   }
 };
 
+bool is_given(const Scan& scan) { return !scan.files.empty() || !scan.clouds.empty(); }
+
+/// The cells of a survey of known ground are the ground's, or as many of them together as the points
+/// of the scans need.
+double cell_on(const GroundState& ground, double needed) {
+  constexpr double rounding = 1e-6;
+  const double cell = ground.terrain.bank.cell_size;
+  return cell * std::max(1.0, std::ceil(needed / cell - rounding));
+}
+
 OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
   OutlinedScans seen;
-  seen.dig = outlined({scans.before, scans.after}, options.threads);
+  seen.stands = options.ground && !is_given(scans.before);
+  seen.dig = outlined({seen.stands ? scan_of(*options.ground) : scans.before, scans.after},
+                      options.threads);
   seen.cell_size = seen.dig.cell_size();
+  if (options.ground) seen.cell_size = cell_on(*options.ground, seen.cell_size);
   if (scans.dump) {
     seen.dump = outlined(*scans.dump, options.threads);
     seen.cell_size = std::max(seen.cell_size, seen.dump->cell_size());
@@ -74,11 +90,19 @@ struct Surfaces {
 };
 
 Surfaces survey(const OutlinedScans& seen, const DensityOptions& options) {
-  const auto survey_one = [&](const OutlinedPair& pair) {
-    return survey_pair(pair, seen.cell_size, options.registered, options.threads);
+  const auto survey_one = [&](const OutlinedPair& pair,
+                              const std::optional<Eigen::Vector2d>& grid = std::nullopt) {
+    return survey_pair(pair, seen.cell_size, options.registered, options.threads, grid);
   };
   Surfaces surfaces;
-  surfaces.dig = survey_one(seen.dig);
+  if (options.ground) {
+    surfaces.dig = survey_one(seen.dig, options.ground->terrain.bank.origin);
+    Surface& before = surfaces.dig.surfaces.before;
+    if (seen.stands) set_deviation(*options.ground, before);
+    leave_out_obstacles(*options.ground, before);
+  } else {
+    surfaces.dig = survey_one(seen.dig);
+  }
   if (seen.dump) surfaces.dump = survey_one(*seen.dump);
   return surfaces;
 }
@@ -106,20 +130,94 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   }
 }
 
+/// The path that was dug, on the ground before it.
+DigPath path_of(const DugPath& dug, const HeightMap& before, const DigPathOptions& rules = {}) {
+  const GroundProfile profile = profile_under_bucket(before, dug.machine);
+  const double lifted = dug.start_z ? *dug.start_z - profile(*dug.start_x) : 0.0;
+  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
+                                  [&](double x) { return profile(x) + lifted; }, rules);
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
+    throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
+  }
+  return std::get<DigPath>(path);
+}
+
 struct SurfaceVolumes {
   VolumeChange change;
+  std::optional<KnownGround> known;
   std::vector<Warning> of_points;  ///< doubts
   std::vector<Warning> of_cover;
 };
 
+VolumeChange change_of(const Surfaces& surfaces, const KnownGround* known,
+                       const ChangeOptions& options) {
+  const SurfacePair& dig = surfaces.dig.surfaces;
+  if (known != nullptr) {
+    return surfaces.dump ? measure_change(dig, surfaces.dump->surfaces, *known, options)
+                         : measure_change(dig, *known, options);
+  }
+  return surfaces.dump ? measure_change(dig, surfaces.dump->surfaces, options)
+                       : measure_change(dig, options);
+}
+
+/// Where the hole of a dig along a path lies.
+Rectangle around(const Rectangle& strip) {
+  constexpr double beside = 0.6;  // ours: ground that slides into the cut [m]
+  return {strip.x_min - beside, strip.y_min - beside, strip.x_max + beside, strip.y_max + beside};
+}
+
+/// Why a floor cannot be the one that was swept; nothing if it can.
+std::optional<Warning> doubt_of(const KnownCut& cut) {
+  constexpr double most_below = 0.1;  // ours: of the bank cut
+  constexpr double most_left = 0.7;   // ours: of all that was cut
+  const double error = 3.0 * known_tracking_sd * cut.swept_area;
+  const bool is_below = cut.fallen < -most_below * cut.bank.value - error;
+  const bool is_filled = cut.fallen > most_left * (cut.bank.value + cut.loose.value) + error;
+  const bool is_unseen = cut.unseen_area > 0.5 * cut.swept_area;
+  if (cut.bank.value > 0.0 && !is_below && !is_filled && !is_unseen) return std::nullopt;
+  return Warning{WarningCode::dug_path_doubtful,
+                 "along the path that was dug the bucket swept " + readable(cut.bank.value) +
+                     " m^3 of bank and " + readable(cut.fallen) +
+                     " m^3 of soil lie on its floor: the dig stalled or was not along this path, "
+                     "or scans and ground are not in the site frame; the path is not used"};
+}
+
+/// Volumes in ground that is known, by the floor that was swept if it is told and can be.
+SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOptions& options) {
+  const HeightMap& before = surfaces.dig.surfaces.before.height;
+  const SoilKind* soil = options.soil.kind ? &*options.soil.kind : nullptr;
+  SurfaceVolumes volumes;
+  volumes.known = known_ground_on(before, *options.ground, soil);
+  ChangeOptions told = options.change;
+  std::optional<Warning> doubt;
+  if (options.dug_path && options.dug_path->start_x) {
+    const Machine& machine = options.dug_path->machine;
+    const DigPath path = path_of(*options.dug_path, before, rules_for_planned_path());
+    add_cut(path, machine, before, *volumes.known);
+    if (!told.dig_area) told.dig_area = around(swept_strip(machine, path));
+    volumes.change = change_of(surfaces, &*volumes.known, told);
+    doubt = doubt_of(*volumes.change.cut);
+    if (!doubt) return volumes;
+    volumes.known->cut = volumes.known->cover = {};
+  }
+  volumes.known->common_sd = untold_loose_sd;
+  volumes.change = change_of(surfaces, &*volumes.known, options.change);
+  if (doubt) volumes.change.warnings.push_back(*doubt);
+  return volumes;
+}
+
 SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfaces,
-                                  const ChangeOptions& options) {
+                                  const DensityOptions& options) {
   SurfaceVolumes volumes;
   VolumeChange& change = volumes.change;
-  change = about(seen, [&] {
-    return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
-                         : measure_change(surfaces.dig.surfaces, options);
-  });
+  if (options.ground) {
+    about(seen, [&] {
+      volumes = volumes_in_known_ground(surfaces, options);
+      return volumes.change;
+    });
+  } else {
+    change = about(seen, [&] { return change_of(surfaces, nullptr, options.change); });
+  }
   volumes.of_points = check_points(surfaces.pairs(), change);
   volumes.of_cover = check_cover(surfaces.pairs(), change);
   std::vector<Warning> doubts = volumes.of_points;
@@ -127,7 +225,10 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   for (const Warning& warning : change.warnings) {
     if (warning.code == WarningCode::sensor_place_doubtful) doubts.insert(doubts.begin(), warning);
   }
-  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  // In known ground a hole of loose soil does not swell.
+  if (!options.ground) {
+    with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  }
   state_water(surfaces.pairs(), change);
   return volumes;
 }
@@ -167,16 +268,6 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
 
 // ---- What is known beside the volumes ---------------------------------------------------------
 
-/// The path that was dug, on the ground before it.
-DigPath path_of(const DugPath& dug, const HeightMap& before) {
-  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
-                                  profile_under_bucket(before, dug.machine));
-  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
-    throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
-  }
-  return std::get<DigPath>(path);
-}
-
 /// Loose soil on the floor of the path that was dug.
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
   const HeightMap& before = surfaces.before.height;
@@ -213,6 +304,34 @@ void add_work(const DensityOptions& options, const Surfaces& surfaces, LawsForDi
                                            "simulated on the scanned ground: ") +
                                    error.what());
   }
+}
+
+std::optional<Fallback> fallback_in_ground(const VolumeChange& change) {
+  if (!(change.cut->swept_area > 0.0)) return std::nullopt;
+  return fallback_in(*change.cut);
+}
+
+/// Share of the variance of the bulking factor by the scans that the scan before made.
+double shared_share(const VolumeChange& change) {
+  const auto k = bulking_factor(change);
+  if (!k) return 0.0;
+  const Eigen::Vector3d slope(-k->value, 1.0, 1.0);
+  const double all = slope.dot(change.errors.scans() * slope);
+  return all > 0.0 ? std::clamp(slope.dot(change.shared * slope) / all, 0.0, 1.0) : 0.0;
+}
+
+/// Little bank in the cut says little of its density.
+void judge_bank(DensityEstimate& estimate) {
+  constexpr double least = 1.0 / 3.0;  // ours
+  if (!estimate.change.cut) return;  // the paper's volumes
+  const KnownCut& cut = *estimate.change.cut;
+  if (!estimate.density || cut.bank_share() >= least) return;
+  estimate.warnings.emplace_back(
+      WarningCode::earlier_soil,
+      "of what was cut " + readable(100.0 * cut.bank_share(), 2) +
+          " % was undisturbed ground, the rest loose soil of earlier digs: too little to tell its "
+          "density; the volumes are as measured",
+      true);
 }
 
 Warning warning_of(const BlockReport& report) {
@@ -302,13 +421,14 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   Surfaces surfaces;
   const SurfaceVolumes volumes = with_doubts(doubts, [&] {
     surfaces = survey(seen, options);  // height maps on each other
-    return surface_volumes_of(seen, surfaces, options.change);
+    return surface_volumes_of(seen, surfaces, options);
   });
   const VolumeChange& surface = volumes.change;
   append(doubts_about(seen, surfaces, volumes), doubts);
 
   DensityEstimate known;  // whatever the method
-  known.fallback = fallback_of(options, surfaces, surface);
+  known.fallback =
+      options.ground ? fallback_in_ground(surface) : fallback_of(options, surfaces, surface);
   LawsForDig laws = laws_for_dig(law, options, known.fallback);
   add_work(options, surfaces, laws);
   known.law = laws.law;
@@ -317,6 +437,9 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   if (options.registered) keep_registration(surfaces, known);
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
+  if (options.ground) {
+    known.shared_with_before = shared_share(surface);
+  }
 
   std::vector<DensityEstimate> results;
   for (const VolumeMethod method : methods) {
@@ -330,6 +453,14 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);
+    if (!estimate.bulking) set_density_by_solids(estimate, laws, options);
+    if (options.ground) {
+      judge_bank(estimate);
+      const double expected =
+          expected_fallback(laws.law, estimate.density ? estimate.density->percent : 50.0);
+      estimate.ground_after = ground_after(
+          options, {surfaces.dig.surfaces, surface, *volumes.known, expected});
+    }
     judge_scans(estimate);
   }
   return results;

@@ -11,6 +11,7 @@
 
 #include "base/statistics.hpp"
 #include "density/joined_density.hpp"
+#include "density/known_site.hpp"
 
 namespace excavplan {
 namespace {
@@ -167,6 +168,88 @@ class PayloadReader {
   double per_log_ = 0.0;         ///< its change with ln(bulk_density_) [%]
 };
 
+/// Finds the density by the solids of a dig whose heap is out of sight. The bank B that was cut
+/// weighs as much as the mass m that was carried away and what rose in sight on the whole, R of loose
+/// soil: rho = (m + rho_loose R) / B. Where the floor of the cut is not known, soil F that the law
+/// expects on it belongs to both.
+class SolidsReader {
+ public:
+  SolidsReader(const DensityLaw& law, const SoilKind& soil, const VolumeChange& change,
+               const DensityOptions& options)
+      : law_(law), soil_(soil), change_(change), options_(options) {
+    if (const auto& water = options.soil.water_content) water_ = water->value;
+  }
+
+  DensityInSoil read() {
+    constexpr int rounds = 4;  // of the fallback that the density expects
+    double density = 50.0;
+    for (int i = 0; i < rounds; ++i) density = density_with(fallback_at(density));
+    DensityInSoil found;
+    found.density.raw_percent = density;
+    found.density.percent = std::clamp(density, 0.0, 100.0);
+    const Eigen::Matrix2d of_soil =
+        density_scatter(soil_, law_.freed_form, found.density.percent, options_.soil.scatter);
+    const double measured = measured_sd();
+    found.density.sd_given_law_percent = measured;
+    set_error(found.density, std::hypot(measured, std::sqrt(of_soil(1, 1))));
+    state(measured, found);
+    return found;
+  }
+
+ private:
+  /// Soil on the floor that the law expects [m^3]; 0 where the floor is known.
+  double fallback_at(double density) const {
+    if (change_.cut->swept_area > 0.0) return 0.0;
+    const double share = expected_fallback(law_, density);
+    return share / (1.0 - share) * change_.before.value;
+  }
+
+  double density_with(double fallback) {
+    fallback_ = fallback;
+    bank_ = change_.before.value + fallback;
+    loose_density_ = soil_.specific_gravity * water_density * (1.0 + water_) /
+                     (1.0 + soil_.void_ratio_loose);
+    const double mass = options_.payload_mass->value;
+    bulk_density_ = (mass + loose_density_ * (change_.after.value + fallback)) / bank_;
+    const double as_wet = (1.0 + soil_.water_content) / (1.0 + water_);
+    per_log_ = 100.0 * soil_.specific_gravity * water_density * (1.0 + water_) / bulk_density_ /
+               (soil_.void_ratio_max - soil_.void_ratio_min);
+    return density_of_bulk_density(soil_, as_wet * bulk_density_);
+  }
+
+  /// By volumes, path, fallback and mass [points].
+  double measured_sd() const {
+    constexpr double of_expected = 0.5;  // ours: sd of a fallback that was not measured, as a share
+    const Eigen::Vector3d by_volume(-bulk_density_, loose_density_, loose_density_);
+    const double both = (loose_density_ - bulk_density_) *
+                        std::hypot(known_tracking_sd * change_.cut->swept_area,
+                                   of_expected * fallback_);
+    const double variance = by_volume.dot(change_.errors.total() * by_volume) + both * both +
+                            std::pow(options_.payload_mass->sd, 2);
+    return per_log_ * std::sqrt(variance) / (bank_ * bulk_density_);
+  }
+
+  void state(double measured, DensityInSoil& found) const {
+    PayloadDensity& payload = found.payload.emplace();
+    payload.mass = *options_.payload_mass;
+    payload.dug_mass = {bulk_density_ * bank_, payload.mass.sd};
+    payload.bulk_density = {bulk_density_, bulk_density_ * measured / per_log_};
+    payload.density_percent = {found.density.raw_percent, found.density.sd_percent};
+    payload.law_density_percent = {std::nan(""), std::nan("")};
+  }
+
+  const DensityLaw& law_;
+  const SoilKind& soil_;
+  const VolumeChange& change_;
+  const DensityOptions& options_;
+  double water_ = soil_.water_content;
+  double fallback_ = 0.0;       ///< expected [m^3]
+  double bank_ = 0.0;           ///< [m^3]
+  double loose_density_ = 0.0;  ///< moist [kg/m^3]
+  double bulk_density_ = 0.0;   ///< moist, in place [kg/m^3]
+  double per_log_ = 0.0;        ///< change of the density with ln(bulk_density_) [%]
+};
+
 // ---- Any kind of soil -------------------------------------------------------------------------
 
 /// Mixture of normal distributions that are cut off at 0 and 100 %, on a grid.
@@ -251,6 +334,11 @@ DugVolumes volumes_of(const DensityEstimate& estimate) {
   dig.bulking_sd = estimate.bulking->sd;
   dig.voids = estimate.blocks.voids;
   if (estimate.fallback) dig.fallback = estimate.fallback->fraction;
+  if (change.cut) {
+    // The rise on the whole: the heap, and what rose or vanished beside it.
+    dig.volumes(1) = change.after.value - dig.volumes(2);
+    if (dig.fallback) dig.fallback->value = 0.0;
+  }
   return dig;
 }
 
@@ -274,6 +362,20 @@ DensityInSoil density_in(const DensityLaw& given, const SoilKind* soil, const Du
   answer.found.evidence *=
       normal_cdf((100.0 - density.raw_percent) / sd) - normal_cdf(-density.raw_percent / sd);
   return answer.found;
+}
+
+double expected_fallback(const DensityLaw& law, double density_percent) {
+  constexpr double most = 0.5;  // ours
+  const double d = std::clamp(density_percent, 0.0, 100.0);
+  const double freed = bulking_of_density(law.freed_form, d);
+  const double seen = bulking_of_density(law.form, d);
+  const double share = (freed - seen) / (1.0 - seen);
+  return std::isfinite(share) ? std::clamp(share, 0.0, most) : 0.0;
+}
+
+DensityInSoil density_by_solids(const DensityLaw& law, const SoilKind& soil,
+                                const VolumeChange& change, const DensityOptions& options) {
+  return SolidsReader(law, soil, change, options).read();
 }
 
 DensityInAny density_in_any(const std::vector<SoilLaw>& laws, const DugVolumes& dig,

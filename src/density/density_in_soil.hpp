@@ -46,6 +46,16 @@ struct DensityInSoil {
 DensityInSoil density_in(const DensityLaw& law, const SoilKind* soil, const DugVolumes& dig,
                          const DensityOptions& options);
 
+/// Soil that falls back in a dig, as a share of its cut, as a law expects it: what its form for
+/// height maps and that freed of fallback say of one density.
+double expected_fallback(const DensityLaw& law, double density_percent);
+
+/// The density by the solids of a dig whose heap is out of sight, in known ground: what was carried
+/// away, and what rose in sight, was bank.
+/// @param change  with a cut
+DensityInSoil density_by_solids(const DensityLaw& law, const SoilKind& soil,
+                                const VolumeChange& change, const DensityOptions& options);
+
 /// The density in any of several kinds of soil.
 struct DensityInAny {
   std::vector<SoilAnswer> soils;

@@ -272,6 +272,7 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
     laws.warnings.push_back(law_of_other_soil(law, *kind));
   }
   if (auto wet = too_wet(options.soil)) laws.warnings.push_back(std::move(*wet));
+  if (fallback && options.ground) return laws;  // judged, and of the whole cut
   const auto calibration = calibrate_dug(options);
   if (calibration && can_be_fitted(law)) laws.law = law_of(*calibration);
   if (const auto doubt = doubt_of(fallback, calibration)) {
@@ -318,6 +319,31 @@ void set_density(DensityEstimate& estimate, const LawsForDig& laws, const Densit
     estimate.warnings.push_back(disagreement_of(*estimate.payload, options.soil.unknown));
     estimate.trustworthy = false;
   }
+}
+
+void set_density_by_solids(DensityEstimate& estimate, const LawsForDig& laws,
+                           const DensityOptions& options) {
+  const VolumeChange& change = estimate.change;
+  const auto is_out_of_sight = [](const Warning& warning) {
+    return warning.code == WarningCode::no_dumped_soil;
+  };
+  const auto is_unseen_hole = [](const Warning& warning) {
+    return warning.code == WarningCode::zone_unseen;
+  };
+  const auto& warnings = change.warnings;
+  const bool can = change.cut && options.payload_mass && options.soil.kind &&
+                   change.before.value > 0.0 &&
+                   std::any_of(warnings.begin(), warnings.end(), is_out_of_sight) &&
+                   std::none_of(warnings.begin(), warnings.end(), is_unseen_hole);
+  if (!can) return;
+  for (const Warning& warning : laws.warnings) estimate.warnings.push_back(warning);
+  const DensityInSoil found = density_by_solids(laws.law, *options.soil.kind, change, options);
+  estimate.law = laws.law;
+  estimate.density = found.density;
+  estimate.payload = found.payload;
+  estimate.trustworthy = found.density.trustworthy;
+  for (const Warning& warning : found.density.warnings) estimate.warnings.push_back(warning);
+  if (options.prior || laws.work) join_second(laws, options, estimate);
 }
 
 }  // namespace excavplan

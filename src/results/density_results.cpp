@@ -216,6 +216,12 @@ Json estimate_json(const DensityEstimate& estimate) {
   if (estimate.loads) json["density_by_loads"] = loads_json(*estimate.loads);
   json["prior"] = nullptr;
   if (estimate.successive) json["prior"] = prior_json(*estimate.successive);
+  json["bank_share"] = nullptr;
+  if (const auto& cut = estimate.change.cut) {
+    json["bank_share"] = cut->bank_share();
+    add_measured(json["volume"], "loose_dug", cut->loose, "_m3");
+    add_measured(json["volume"], "bank_cut", cut->bank, "_m3");
+  }
   json["fallback"] = estimate.fallback ? fallback_json(*estimate.fallback) : nullptr;
   json["blocks"] = blocks_json(estimate.blocks);
   json["law"] = estimate.law.name;

@@ -174,12 +174,12 @@ void require_memory(const OutlinedPair& pair, const Rectangle& extent, double ce
 }
 
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
-                           unsigned threads) {
+                           unsigned threads, const std::optional<Eigen::Vector2d>& grid) {
   RasterOptions raster;
   raster.cell_size = cell_size;
   const Rectangle extent = overlap(pair);
   require_memory(pair, extent, cell_size);
-  raster.node = {extent.x_min, extent.y_min};  // cells move with the scans
+  raster.node = grid.value_or(Eigen::Vector2d(extent.x_min, extent.y_min));
   if (registered) {
     return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -49,8 +50,10 @@ bool leaves_difference(const SurfacePair& pair);
 /// Both on one grid over the ground that both see. If they are to be registered, the one after is
 /// registered to the one before on the ground that did not change, as far as the motion is
 /// significant; else only their relative height is undetermined.
+/// @param grid  where corners of cells meet; else they move with the scans
 /// @throws FrameError if they do not overlap
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
-                           unsigned threads);
+                           unsigned threads,
+                           const std::optional<Eigen::Vector2d>& grid = std::nullopt);
 
 }  // namespace excavplan

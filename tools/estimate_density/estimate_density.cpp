@@ -2,17 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/density/density_estimate.hpp>
 
-#include "estimate_density/estimate_outcome.hpp"
-#include "estimate_density/estimate_plots.hpp"
-#include "estimate_density/method_inputs.hpp"
-#include "estimate_density/second_densities.hpp"
-#include "estimate_density/soil_inputs.hpp"
-#include "estimate_density/survey_map_names.hpp"
+#include "estimate_density/estimate_inputs.hpp"
+#include "estimate_density/site_estimate.hpp"
 #include "estimate_density/survey_planning.hpp"
-#include "frame/tool.hpp"
-#include "inputs/named_kinds.hpp"
-#include "inputs/recordings.hpp"
-#include "inputs/scans.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -31,60 +23,13 @@ const About about = {
       "joins the density by the work of the joints; simulate-dig --history writes such a log"},
      {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
+     {"estimate-density after.pcd --site pit --dug plan.json",
+      "the next dig on a site that is remembered, planned by plan-path --site pit --json"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
       "without scans: expected density error of a D435i on a 2.5 m mast"}},
     true};
 
-struct Inputs {
-  std::optional<std::string> before, after;
-  std::optional<std::string> dump_before;
-  std::optional<std::string> dump_after;
-  ScanFrames frames;
-  DensityOptions options;
-  MethodInputs method;
-  bool still = false;
-  std::optional<std::string> plan_survey;
-  SoilInputs soil;
-  SecondDensities second;
-  Plots plots;
-  Maps maps;
-  std::optional<std::string> report;
-};
-
-void declare_estimate(Arguments& arguments, Inputs& inputs) {
-  arguments.positional(
-      "BEFORE", inputs.before,
-      "cloud before the dig: PCD, PLY, LAS or XYZ, or " + std::string(recording_form));
-  arguments.positional("AFTER", inputs.after, "cloud after the dig");
-  arguments.file("dump-before", inputs.dump_before,
-                 "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
-  arguments.file("dump-after", inputs.dump_after, "cloud of the dump area after");
-  arguments.option("area", inputs.frames.area,
-                   "ignore points outside this area (default: where both scans have points)");
-  arguments.option("dig-area", inputs.options.change.dig_area,
-                   "area of the hole (default: detected)");
-  arguments.option("dump-area", inputs.options.change.dump_area,
-                   "area of the heap (default: detected)");
-  declare_frames(arguments, inputs.frames);
-  declare_units(arguments, inputs.frames);
-  declare_method(arguments, inputs.method);
-  arguments.flag("no-register", inputs.still,
-                 "do not look for a motion of the sensor between the scans: there was none");
-  arguments.option("cell", inputs.options.cell_size, Quantity::length,
-                   "cell size of the height map, voxel size of --method paper (default: from the "
-                   "point density, at least 0.05)");
-  declare_soil(arguments, inputs.soil);
-  arguments.only_if({[&inputs] { return inputs.method.uses("surface"); },
-                     "--method paper has no error to weigh a second density by"},
-                    [&] { inputs.second.declare(arguments); });
-  declare_dug_path(arguments, inputs.method);
-  declare_machine_in_view(arguments, inputs.frames.view);
-  declare_plots(arguments, inputs.plots, names_of(estimate_figures()));
-  declare_maps(arguments, inputs.maps, survey_map_names(inputs.dump_before));
-  arguments.report(inputs.report);
-}
-
-void declare(Arguments& arguments, Inputs& inputs) {
+void declare(Arguments& arguments, EstimateInputs& inputs) {
   arguments.only_if(
       {[&inputs] { return !inputs.plan_survey; }, "a survey is planned by its keys alone"},
       [&] { declare_estimate(arguments, inputs); });
@@ -92,7 +37,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
-DigScans scans_of(const Inputs& inputs, ScanReport& report) {
+DigScans scans_of(const EstimateInputs& inputs, ScanReport& report) {
   const ScanPair whole = placed_pair(*inputs.before, *inputs.after, inputs.frames, report);
   DigScans scans{whole.before, whole.after};
   if (inputs.dump_before) {
@@ -101,39 +46,32 @@ DigScans scans_of(const Inputs& inputs, ScanReport& report) {
   return scans;
 }
 
-Outcome work_on_scans(const Inputs& inputs) {
+Outcome work_on_scans(const EstimateInputs& inputs) {
   check_method(inputs.method);
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
     usage_error("--dump-before and --dump-after must be given together");
   }
   ScanReport report;
   const DigScans scans = scans_of(inputs, report);
-  const Machine machine = machine_named(inputs.frames.view.machine);
-  DensityOptions options = inputs.options;
-  options.registered = !inputs.still;
-  apply_method(inputs.method, machine, options);
-  const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
-  inputs.second.apply_to(law, options);
-  const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
+  KnownDig dig = known_dig(inputs);
+  const DensityOptions& options = dig.options;
+  inputs.second.apply_to(dig.law, dig.options);
+  const auto by_method = [&] { return estimate(inputs.method, scans, dig.law, options); };
   const BothEstimates both =
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
-  Outcome outcome = estimate_outcome(counts, options.soil);
-  add_machine_warnings(counts, law, machine, {scans.before.unit, report.in_counts}, outcome);
-  inputs.second.check(counts, outcome);
+  Outcome outcome = shown_estimate(inputs, dig, counts, {scans.before.unit, report.in_counts});
   report.add_to(outcome);
-  draw_estimate(inputs.plots, inputs.report, counts, outcome);
-  write_maps(
-      inputs.maps, [&] { return survey_maps(counts.change, counts.before); }, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);
   return outcome;
 }
 
-Outcome work(const Inputs& inputs) {
+Outcome work(const EstimateInputs& inputs) {
   if (inputs.plan_survey) {
     if (inputs.before || inputs.after) usage_error("--plan-survey takes no scans");
     return planned_survey(*inputs.plan_survey, law_named(inputs.soil.law));
   }
+  if (inputs.site.is_used()) return work_on_site(inputs);
   if (!inputs.before || !inputs.after) {
     usage_error(std::string(inputs.before ? "AFTER" : "BEFORE") +
                 " is missing: a cloud before the dig and one after it are needed");

@@ -72,6 +72,38 @@ void place(const Side& side, const ScanFrames& frames, Scan& scan) {
   if (frames.both) scan.site_from_scan = frame_named("--frame", *frames.both);
 }
 
+void check(const ScanFrames& frames) {
+  if (frames.level && frames.view.any()) {
+    usage_error("--level excludes --machine-pose: it does not find the swing axis");
+  }
+  if (frames.view.recorded && frames.recorded.tf_frame.empty()) {
+    usage_error("--machine-recorded needs --tf-frame, with the swing axis as origin");
+  }
+}
+
+Side side_after(const std::string& text, const ScanFrames& frames) {
+  return {"after",           text,
+          frames.after_unit, frames.after,
+          frames.after_pose, frames.after_origin,
+          frames.view.after};
+}
+
+Scan placed(const Side& side, const ScanFrames& frames, ScanReport& report) {
+  Scan scan = scan_of(side, frames, report);
+  place(side, frames, scan);
+  return scan;
+}
+
+void require_recording(const ScanFrames& frames, const ScanReport& report) {
+  if (!report.recordings.empty()) return;
+  if (!frames.recorded.tf_frame.empty()) {
+    usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
+  }
+  if (frames.recorded.depth_unit) {
+    usage_error("--depth-unit needs depth images of a recording; depth-to-cloud has one for PNG");
+  }
+}
+
 }  // namespace
 
 void declare_frames(Arguments& arguments, ScanFrames& frames) {
@@ -122,28 +154,12 @@ void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
 
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
                      ScanReport& report) {
-  if (frames.level && frames.view.any()) {
-    usage_error("--level excludes --machine-pose: it does not find the swing axis");
-  }
-  if (frames.view.recorded && frames.recorded.tf_frame.empty()) {
-    usage_error("--machine-recorded needs --tf-frame, with the swing axis as origin");
-  }
-  const auto placed = [&](const Side& side) {
-    Scan scan = scan_of(side, frames, report);
-    place(side, frames, scan);
-    return scan;
-  };
+  check(frames);
   Scan first = placed({"before", before, frames.before_unit, frames.before, frames.before_pose,
-                       frames.before_origin, frames.view.before});
-  ScanPair pair = {std::move(first),
-                   placed({"after", after, frames.after_unit, frames.after, frames.after_pose,
-                           frames.after_origin, frames.view.after})};
-  if (!frames.recorded.tf_frame.empty() && report.recordings.empty()) {
-    usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
-  }
-  if (frames.recorded.depth_unit && report.recordings.empty()) {
-    usage_error("--depth-unit needs depth images of a recording; depth-to-cloud has one for PNG");
-  }
+                       frames.before_origin, frames.view.before},
+                      frames, report);
+  ScanPair pair = {std::move(first), placed(side_after(after, frames), frames, report)};
+  require_recording(frames, report);
   if (frames.level) {
     Scan whole = pair.before;
     whole.area.reset();  // is in the levelled frame
@@ -152,6 +168,14 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
     pair.before.site_from_scan = pair.after.site_from_scan = report.level->site_from_scan;
   }
   return pair;
+}
+
+Scan placed_scan(const std::string& after, const ScanFrames& frames, ScanReport& report) {
+  check(frames);
+  if (frames.level) usage_error("--level needs BEFORE: it levels by the ground in that scan");
+  Scan scan = placed(side_after(after, frames), frames, report);
+  require_recording(frames, report);
+  return scan;
 }
 
 void ScanReport::add_to(Outcome& outcome) const {

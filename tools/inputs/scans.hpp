@@ -69,6 +69,10 @@ struct ScanReport {
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
                      ScanReport& report);
 
+/// The same of a scan after a dig alone, whose ground before is known.
+/// @throws Error also if it is to be levelled by a scan before
+Scan placed_scan(const std::string& after, const ScanFrames& frames, ScanReport& report);
+
 /// Runs `work`, and adds to an error about the frame of a scan the options that correct it.
 template <typename Work>
 auto with_frame_hint(const std::string& hint, const Work& work) {

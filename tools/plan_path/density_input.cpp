@@ -57,8 +57,8 @@ void check(const DensityInput& input) {
     usage_error("--density-sd: " + number_text(*input.sd) + " % is outside 0 .. " +
                 number_text(most_density_sd));
   }
-  if (!input.percent && !input.file) {
-    usage_error("give either --density or --density-from");
+  if (!input.percent && !input.file && !input.by_site) {
+    usage_error("give either --density, --density-from or --site");
   }
   if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {
     usage_error("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");

@@ -20,6 +20,7 @@ struct DensityInput {
   std::optional<double> percent;
   std::optional<double> sd;  ///< [points]; overrides that of the file
   std::optional<std::string> file;
+  bool by_site = false;  ///< none is needed: --site knows one
 };
 
 void declare_density(Arguments& arguments, DensityInput& input);

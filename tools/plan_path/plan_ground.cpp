@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan_path/plan_ground.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace excavplan::tools {
@@ -20,6 +21,26 @@ void take_density_of_file(const PlanGroundInputs& inputs, PlanGround& ground) {
   ground.density_from = {*told, std::nullopt, std::nullopt};
 }
 
+PlanGround ground_of_site(const PlanGroundInputs& inputs, const Machine& machine,
+                          const SoilKind& soil) {
+  const DensityInput& told = inputs.density;
+  const auto site = std::make_shared<SiteToPlanOn>(inputs.site, machine, soil);
+  if ((told.percent || told.file || told.sd) && site->has_density()) {
+    usage_error(
+        "--density, --density-sd and --density-from exclude --site, which has digs that "
+        "tell the density");
+  }
+  const bool is_told = told.percent || told.file;
+  PlanGround ground = {{},  is_told ? density_of(told) : site->density_in_reach(), told, {}, {}, {},
+                       true};
+  ground.site = site;
+  GroundState known;
+  known.terrain =
+      site->ground(planning_extent(machine), inputs.cell_size.value_or(usual_cell(machine)));
+  ground.terrain = terrain_to_dig(known, soil, ground.density.percent);
+  return ground;
+}
+
 }  // namespace
 
 void declare_plan_ground(Arguments& arguments, PlanGroundInputs& inputs) {
@@ -28,12 +49,34 @@ void declare_plan_ground(Arguments& arguments, PlanGroundInputs& inputs) {
   declare_ground(arguments, inputs.state,
                  {{"terrain", "terrain-frame", "unit", "attitude"},
                   "the planned dig as it is foretold; the payload is off the ground"});
+  declare_site_folder(arguments, inputs.site,
+                      "plan on the ground and for the density that estimate-density --site "
+                      "remembers in this folder");
+  arguments.exclude("site", {"ground", "terrain", "terrain-frame", "unit", "attitude"});
+}
+
+void check(const PlanGroundInputs& inputs) {
+  DensityInput density = inputs.density;
+  density.by_site = inputs.site.folder.has_value();
+  check(density);
+}
+
+bool PlanGround::takes_density_under(const DigPlan& plan) {
+  constexpr double least_difference = 1.0;
+  if (!site || !site->has_density() || !plan.dig) return false;
+  const GroundDensity there = site->density_under(plan);
+  const bool differs = std::abs(there.percent - density.percent) > least_difference ||
+                       std::abs(there.sd_percent - density.sd_percent) > least_difference;
+  if (differs) density = there;
+  return differs;
 }
 
 PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
                        const SoilKind& soil) {
-  PlanGround ground = {{}, density_of(inputs.density), inputs.density, std::nullopt, {}};
+  if (inputs.site.folder) return ground_of_site(inputs, machine, soil);
+  PlanGround ground = {{}, density_of(inputs.density), inputs.density, {}, {}, {}, false};
   ground.given = given_ground(inputs.state, machine, soil, ground.density.percent);
+  ground.is_known = ground.given || inputs.terrain.cloud;
   if (ground.given) {
     ground.terrain = ground.given->terrain;
     take_density_of_file(inputs, ground);
@@ -44,6 +87,31 @@ PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
   ground.terrain = std::move(site.ground);
   ground.warnings = std::move(site.warnings);
   return ground;
+}
+
+DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,
+                const PlanOptions& options) {
+  const auto planned = [&] {
+    return ground.is_known ? plan_dig(machine, soil, ground.density, ground.terrain, options)
+                           : plan_dig(machine, soil, ground.density, options);
+  };
+  DigPlan plan = planned();
+  if (ground.takes_density_under(plan)) plan = planned();
+  return plan;
+}
+
+MotionGround ground_to_move_on(const MotionInputs& motion, const PlanGroundInputs& inputs,
+                               const PlanGround& ground, const Machine& machine,
+                               PlanOptions& options) {
+  MotionGround area = motion_ground(motion, machine, inputs.terrain, options.search.objective);
+  set_standing(motion, machine, inputs.terrain, options);
+  if (ground.given) area = {ground.terrain, {}, "as in the ground file"};
+  if (!ground.site) return area;
+  const double cell = usual_cell(machine);
+  area = {ground.site->ground(swing_extent(machine), cell), {}, "as the site knows it"};
+  HeightMap below = ground.site->ground(standing_extent(machine), 2.0 * cell).highest();
+  if (!below.z.isNaN().all()) options.standing_on = std::move(below);
+  return area;
 }
 
 void write_ground_after(const PlanGroundInputs& inputs, const PlanGround& ground,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "inputs/ground.hpp"
 #include "inputs/site.hpp"
 #include "plan_path/density_input.hpp"
+#include "plan_path/motion_inputs.hpp"
+#include "plan_path/plan_site.hpp"
 
 /// @file
 /// The ground that a plan is made for, and its density.
@@ -20,9 +23,10 @@ struct PlanGroundInputs {
   DensityInput density;
   TerrainInput terrain;
   GroundInput state;
+  SiteFolderInputs site;
   std::optional<double> cell_size;
 
-  bool is_level() const { return terrain.is_level() && !state.file; }
+  bool is_level() const { return terrain.is_level() && !state.file && !site.folder; }
 };
 
 void declare_plan_ground(Arguments& arguments, PlanGroundInputs& inputs);
@@ -32,11 +36,33 @@ struct PlanGround {
   GroundDensity density;             ///< of its bank; that of --ground where its file tells it
   DensityInput density_from;         ///< where that is from
   std::optional<GivenGround> given;  ///< by --ground
+  std::shared_ptr<const SiteToPlanOn> site = {};  ///< by --site; else null
   std::vector<Warning> warnings;
+
+  bool is_known = false;  ///< else it is taken to be level
+
+  /// Null unless it is known.
+  const Terrain* known() const { return is_known ? &terrain : nullptr; }
+  /// Takes the density that the site believes in where a plan digs, if it differs from the one that
+  /// was planned for by more than a point (ours). @return whether it does
+  bool takes_density_under(const DigPlan& plan);
 };
+
+/// Checks made before the work. @throws Error (bad_input)
+void check(const PlanGroundInputs& inputs);
 /// @throws Error as make_site(), density_of() and given_ground()
 PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
                        const SoilKind& soil);
+
+/// On a site the plan is made again where the density there is another (takes_density_under()).
+DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,
+                const PlanOptions& options);
+
+/// Ground that the motion must be clear of, and sets that on which the machine stands.
+/// @throws Error as motion_ground()
+MotionGround ground_to_move_on(const MotionInputs& motion, const PlanGroundInputs& inputs,
+                               const PlanGround& ground, const Machine& machine,
+                               PlanOptions& options);
 
 /// A plan and where it is dug.
 struct PlannedOn {

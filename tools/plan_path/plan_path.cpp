@@ -31,6 +31,7 @@ const About about = {
       "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
      {"plan-path --density 40 --search --ground ground.tif", "on ground as simulate-dig left it"},
+     {"plan-path --site pit --search", "on a site that estimate-density --site remembers"},
      {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
      {"plan-path --density 40 --density-sd 8 --search",
       "the path of highest expected efficiency, and the value of knowing the density"}},
@@ -101,24 +102,19 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
 
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
-  check(inputs.on.density);
+  check(inputs.on);
   check(inputs.dig_search);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const PlanGround on = plan_ground(inputs.on, machine, soil);
+  PlanGround on = plan_ground(inputs.on, machine, soil);
   PlanOptions options = options_of(inputs, machine, soil, console);
-  auto area = motion_ground(inputs.motion, machine, inputs.on.terrain, options.search.objective);
-  if (on.given) area = {on.terrain, {}, "as in the ground file"};
-  set_standing(inputs.motion, machine, inputs.on.terrain, options);
-  const Terrain* const known = on.given || inputs.on.terrain.cloud ? &on.terrain : nullptr;
-  DigPlan plan = naming_options(search_option_names, [&] {
-    return known ? plan_dig(machine, soil, on.density, *known, options)
-                 : plan_dig(machine, soil, on.density, options);
-  });
+  const auto area = ground_to_move_on(inputs.motion, inputs.on, on, machine, options);
+  DigPlan plan =
+      naming_options(search_option_names, [&] { return plan_on(on, machine, soil, options); });
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
-  outcome.warnings = plan_warnings(plan, on.density_from, known);
+  outcome.warnings = plan_warnings(plan, on.density_from, on.known());
   for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), on.warnings}) {
     outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
   }
@@ -133,6 +129,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const PlanSite dug = {soil, on.density.percent, on.terrain, options.simulator};
   write_motion(inputs.motion, {machine, area, plan, options.search.objective}, outcome);
   if (on.given) describe(inputs.on.state, *on.given, outcome);
+  if (on.site) on.site->describe(on.density, outcome);
   if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include <excavplan/base/measured.hpp>
 #include <excavplan/base/warning.hpp>
+#include <excavplan/change/known_ground.hpp>
 #include <excavplan/ground/height_map.hpp>
 
 /// @file
@@ -104,11 +106,12 @@ struct VolumeErrors {
   Eigen::Matrix3d faces = Eigen::Matrix3d::Zero();        ///< position of steep faces
   Eigen::Matrix3d thin = Eigen::Matrix3d::Zero();         ///< soil too thin to tell from noise
   Eigen::Matrix3d attribution = Eigen::Matrix3d::Zero();  ///< changes that are open
+  Eigen::Matrix3d loose = Eigen::Matrix3d::Zero();        ///< loose soil that was dug again
 
   /// Covariance by the scans alone.
   Eigen::Matrix3d scans() const { return noise + correlated + datum + holes + faces + thin; }
   /// Covariance by all sources.
-  Eigen::Matrix3d total() const { return scans() + attribution; }
+  Eigen::Matrix3d total() const { return scans() + attribution + loose; }
 };
 
 /// Volumes of one dig [m^3]: before = excavated, after = spilled + dumped (the paper's eqs. 3, 4).
@@ -116,14 +119,16 @@ struct VolumeChange {
   Measured excavated;  ///< the hole
   Measured spilled;    ///< soil that rose beside it
   Measured dumped;     ///< the heap
-  Measured before;     ///< undisturbed volume of the dug soil
-  Measured after;      ///< its loose volume
+  Measured before;  ///< undisturbed volume of the dug soil: the hole; with `cut` the bank cut
+  Measured after;   ///< its loose volume: spill and heap; with `cut` `before` and what rose on the whole
   /// Change of the ground that did not change enough for a zone, within 0.6 m of hole, spill and
   /// heap and above that farther away: the sum without a threshold
   Measured outside;
   Measured strewn;                       ///< what of it is counted as soil, in `spilled`
   double covariance_before_after = 0.0;  ///< [m^6]
   VolumeErrors errors;                   ///< the variances by source
+  std::optional<KnownCut> cut;           ///< of a dig in ground that is known
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();  ///< of `errors`: what the scan before made
   std::vector<ChangeZone> zones;         ///< of all areas
   std::vector<AreaChange> areas;         ///< one for a whole scene, two for a dig and a dump area
   std::vector<Warning> warnings;         ///< codes: measure_change()

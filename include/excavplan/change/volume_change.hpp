@@ -40,6 +40,16 @@ VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& optio
 VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
                             const ChangeOptions& options = {});
 
+/// The same where the ground before is known (docs/methods.md#known-ground): `before` is the bank
+/// that was cut and `after` its volume since, without loose soil that was dug again and, where the
+/// swept floor is told, with what fell back on it. No hump is doubted (earlier_soil), and
+/// VolumeChange::cut says what was cut. Of two areas it is that of the dig.
+/// @throws Error (bad_input) as for surfaces, or if a layer has another size
+VolumeChange measure_change(const SurfacePair& scene, const KnownGround& known,
+                            const ChangeOptions& options = {});
+VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+                            const KnownGround& known, const ChangeOptions& options = {});
+
 /// Volumes from height maps of the whole scene: the noise is that of the stable ground, and nothing
 /// moved between the scans but the datum. @throws Error (bad_input) as for surfaces
 VolumeChange measure_change(const HeightMap& before, const HeightMap& after,

@@ -8,6 +8,7 @@
 #include <excavplan/density/other_volumes.hpp>
 #include <excavplan/density/soil_answers.hpp>
 #include <excavplan/density/successive_density.hpp>
+#include <excavplan/ground/ground_state.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/scans/scan_surface.hpp>
@@ -19,7 +20,9 @@ namespace excavplan {
 
 /// The scans of one dig.
 struct DigScans {
-  Scan before;                        ///< of the whole scene or, with `dump`, of the dig area alone
+  /// Of the whole scene or, with `dump`, of the dig area alone. Without files and clouds the known
+  /// ground stands for it (DensityOptions::ground).
+  Scan before;
   Scan after;                         ///< of the same area as `before`
   std::optional<ScanPair> dump = {};  ///< of the dump area: the paper's four clouds
 };
@@ -36,6 +39,7 @@ struct DugPath {
   Machine machine;                ///< that drove it
   DigParameters parameters;       ///< of the path
   std::optional<double> start_x;  ///< where the path enters the ground [m]
+  std::optional<double> start_z = {};  ///< and how high; else by the scan before [m]
 };
 
 /// Settings of estimate_density().
@@ -51,6 +55,10 @@ struct DensityOptions {
   std::optional<Measured> payload_mass;  ///< moist soil that was dumped, if it was weighed [kg]
   /// Of the joints in the dig, joint_work() [J]; needs the dug path with its start and the kind.
   std::optional<Measured> joint_work;
+  /// The ground before as it is known, in the site frame of the scans: k is then of the bank alone
+  /// (docs/methods.md#known-ground).
+  std::optional<GroundState> ground;
+  double scan_time = 0.0;             ///< of the scan after, since 1970-01-01 UTC, for `ground` [s]
   std::optional<PriorDensity> prior;  ///< by digs before this one in the same soil
   unsigned threads = 0;               ///< 0: one per core; the result is the same for any number
 };

@@ -35,7 +35,7 @@ struct DensityReading {
 };
 
 /// Result of estimate_density(). Without dumped soil in the scans it holds volumes, a warning, and
-/// neither bulking factor nor density.
+/// no bulking factor; a density only in known ground by the mass of the payload.
 struct DensityEstimate {
   VolumeMethod method = VolumeMethod::surface;  ///< how volumes were found
   /// Volumes, their covariance, zones and height change. Zones and height change are those of the
@@ -43,7 +43,8 @@ struct DensityEstimate {
   VolumeChange change;
   std::vector<HeightMap> before;                 ///< the ground before, of each area of `change`
   std::optional<Measured> bulking;               ///< k as the scans give it [-]
-  std::optional<Fallback> fallback;              ///< if the path that was dug is known
+  /// If the path that was dug is known. In known ground `bulking` is already of the whole cut.
+  std::optional<Fallback> fallback;
   BlockReport blocks;                            ///< voids between blocks of hard soil
   std::optional<Measured> corrected;             ///< k corrected for fallback and voids, if any [-]
   std::optional<RelativeDensity> density;        ///< percent, raw, sd, 95 % interval
@@ -60,6 +61,10 @@ struct DensityEstimate {
   double cell_size = 0.0;                        ///< [m]
   std::uint64_t machine_points = 0;              ///< of the machine, left out of all scans
   std::optional<ScanRegistration> registration;  ///< none without a registration
+  /// Of the variance of `bulking` by the scans, what the scan before made: two digs that share a
+  /// scan, after the one and before the other, err by it in opposite directions [-].
+  double shared_with_before = 0.0;
+  std::optional<GroundState> ground_after;  ///< if the ground before is known
   std::optional<ScanRegistration> dump_registration;  ///< if the dump area has scans of its own
 
   /// The density for plan_dig(); nothing where there is none.

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "site/site_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <excavplan/scans/scan_terrain.hpp>
+
+#include "scans/scan_reading.hpp"
+#include "site/site_grid.hpp"
+#include "site/tracks.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double first_sd = 0.005;  // ours: of ground that was scanned once [m]
+
+Rectangle extent_of(const Scan& scan, unsigned threads) {
+  const ScanOutline seen = outlines({scan}, threads).front();
+  if (seen.extent) return *seen.extent;
+  throw Error(ErrorKind::bad_file, name_of(scan) + ": has no finite points");
+}
+
+/// That holds the rectangle in another frame.
+Rectangle moved(const Rectangle& area, const Eigen::Isometry3d& motion) {
+  Eigen::AlignedBox2d box;
+  for (const double x : {area.x_min, area.x_max}) {
+    for (const double y : {area.y_min, area.y_max}) {
+      box.extend((motion * Eigen::Vector3d(x, y, 0.0)).head<2>());
+    }
+  }
+  return {box.min().x(), box.min().y(), box.max().x(), box.max().y()};
+}
+
+Scan moved(Scan scan, const Eigen::Isometry3d& motion) {
+  scan.site_from_scan = motion.matrix() * scan.site_from_scan;
+  if (scan.area) scan.area = moved(*scan.area, motion);
+  return scan;
+}
+
+DensityEstimate estimate_in(const SiteEvent& event, const SiteSettings& settings,
+                            const GroundState& ground) {
+  DensityOptions options = event.options;
+  options.soil.kind = settings.soil;
+  options.ground = ground;
+  options.scan_time = event.time;
+  options.cell_size = std::nullopt;  // that of the ground, or a multiple
+  return estimate_density({event.before.value_or(Scan{}), event.scan}, settings.law, options);
+}
+
+/// The dig in the frame of the machine, whose path lies in the plane y = 0.
+DensityEstimate estimate_at_machine(const SiteEvent& event, const SiteSettings& settings,
+                                    const GroundState& ground) {
+  const Eigen::Isometry3d to_machine = event.base.site_from_machine().inverse();
+  SiteEvent turned = event;
+  turned.scan = moved(event.scan, to_machine);
+  if (event.before) turned.before = moved(*event.before, to_machine);
+  ChangeOptions& change = turned.options.change;
+  if (change.dig_area) change.dig_area = moved(*change.dig_area, to_machine);
+  if (change.dump_area) change.dump_area = moved(*change.dump_area, to_machine);
+  const double cell = ground.terrain.bank.cell_size;
+  const Rectangle extent = on_grid(moved(ground.terrain.bank.extent(), to_machine), cell);
+  return estimate_in(turned, settings, seen_by(ground, event.base, flat_ground(extent, cell)));
+}
+
+/// Mixtures of soils keep to their range but for rounding.
+void hold_void_ratios(const SoilKind& soil, Eigen::ArrayXXd& ratios) {
+  ratios = (ratios > soil.void_ratio_loose).select(soil.void_ratio_loose, ratios).eval();
+  ratios = (ratios < soil.void_ratio_min).select(soil.void_ratio_min, ratios).eval();
+}
+
+/// False of a scan of another place, or in another frame.
+bool fits_ground(const DensityEstimate& estimate) {
+  return std::none_of(estimate.warnings.begin(), estimate.warnings.end(), [](const Warning& each) {
+    const bool is_of_place = each.code == WarningCode::scans_do_not_fit ||
+                             each.code == WarningCode::registration_beyond_prior ||
+                             each.code == WarningCode::looks_swapped;
+    return is_of_place && each.ends_trust;
+  });
+}
+
+}  // namespace
+
+GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings) {
+  const double fresh = settings.soil.void_ratio_loose;
+  GroundState ground = unseen_ground(extent_of(scan, 0), *settings.cell_size, fresh);
+  const HeightMap grid = ground.terrain.bank;
+  Terrain seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain;
+  ground.terrain.bank = std::move(seen.bank);
+  if (seen.obstacles.size() > 0) ground.terrain.obstacles = std::move(seen.obstacles);
+  const auto known = !ground.terrain.bank.z.isNaN();
+  ground.seen = known.select(time, grid.z);
+  ground.deviation = known.select(first_sd, grid.z);
+  ground.frame = settings.frame;
+  ground.soil = settings.soil.name;
+  return ground;
+}
+
+SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, GroundState ground) {
+  const Rectangle extent = extent_of(event.scan, event.options.threads);
+  ground = grown(ground, extent, settings.soil.void_ratio_loose);
+  SurveyedEvent result;
+  const bool is_apart = event.dug && event.options.dug_path && !event.base.is_origin();
+  SiteEvent in_site = event;
+  if (is_apart) in_site.options.dug_path = std::nullopt;
+  if (is_apart) in_site.options.joint_work = std::nullopt;
+  DensityEstimate estimate = estimate_in(in_site, settings, ground);
+  result.fits = fits_ground(estimate);
+  result.ground = result.fits ? std::move(*estimate.ground_after) : std::move(ground);
+  if (is_apart && result.fits) estimate = estimate_at_machine(event, settings, ground);
+  hold_void_ratios(settings.soil, result.ground.terrain.loose_void_ratio);
+  if (result.fits && event.dug) {
+    compact_under_tracks(settings, event.base, event.time, result.ground);
+  }
+  result.warnings = estimate.warnings;
+  if (event.dug) result.estimate = std::move(estimate);
+  return result;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <excavplan/ground/ground_state.hpp>
+#include <excavplan/site/site_event.hpp>
+#include <excavplan/site/site_settings.hpp>
+
+/// @file
+/// What a scan says of a site: its ground after, and the density of the dig.
+
+namespace excavplan {
+
+/// Ground that a site did not know, undisturbed as the first scan shows it, on the site's grid.
+/// @throws Error as terrain_from_scan() and unseen_ground()
+GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings);
+
+struct SurveyedEvent {
+  std::optional<DensityEstimate> estimate;
+  GroundState ground;             ///< after, on a grid that covers the one before
+  std::vector<Warning> warnings;  ///< of the estimate or of the scan's ground
+  bool fits = true;               ///< the scan is of this ground, and not of another place or frame
+};
+
+/// @param ground  of the site before; one that covers the scan
+/// @throws Error as estimate_density()
+SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, GroundState ground);
+
+}  // namespace excavplan

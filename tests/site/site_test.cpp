@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/site/site.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "site/site_digs.hpp"
+#include "support/errors.hpp"
+#include "support/run_program.hpp"
+
+namespace excavplan {
+namespace {
+
+using test::DigsInARow;
+using test::error_of;
+using test::has;
+using test::TemporaryFolder;
+
+TEST(Site, BeginsWithItsFirstScan) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  const std::string path = folder.file("site");
+  EXPECT_EQ(error_of([&] { Site(path, digs.settings()); }, ErrorKind::bad_file),
+            path + ": holds no site: it has no site.json");
+  {
+    Site site(path, digs.settings(), SiteAccess::write);
+    EXPECT_TRUE(site.is_empty());
+    const SiteUpdate update = site.update(digs.scan());
+    EXPECT_TRUE(update.taken);
+    EXPECT_FALSE(update.estimate);
+  }
+  const Site site(path, digs.settings());
+  EXPECT_EQ(site.updates(), 1);
+  EXPECT_EQ(site.digs(), 0);
+  const HeightMap surface = site.ground().terrain.surface();
+  const double truth = height_at(digs.ground().surface(), 6.0, 0.3);
+  EXPECT_NEAR(height_at(surface, 6.0, 0.3), truth, 0.01);
+}
+
+TEST(Site, GivesTheDensityOfDigAfterDigAtOnePlace) {
+  const TemporaryFolder folder;
+  DigsInARow digs(60.0);
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  for (const double start : {6.0, 6.0, 5.6}) {
+    SCOPED_TRACE(start);
+    const SiteUpdate update = site.update(digs.dig(start));
+    ASSERT_TRUE(update.taken);
+    ASSERT_TRUE(update.estimate && update.estimate->density && update.density);
+    EXPECT_TRUE(update.trustworthy);
+    EXPECT_NEAR(update.density->percent, 60.0, 3.0 * update.density->sd_percent);
+    EXPECT_LT(update.density->sd_percent, 12.0);
+  }
+  EXPECT_EQ(site.digs(), 3);
+  EXPECT_GT(site.ground().terrain.loose.maxCoeff(), 0.1);
+}
+
+TEST(Site, TakesBeforeAndAfterOfItsFirstDig) {
+  const TemporaryFolder folder;
+  DigsInARow digs(40.0);
+  const SiteEvent before = digs.scan();
+  SiteEvent dig = digs.dig(6.0);
+  dig.before = before.scan;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  const SiteUpdate update = site.update(dig);
+  ASSERT_TRUE(update.density);
+  EXPECT_NEAR(update.density->percent, 40.0, 3.0 * update.density->sd_percent);
+  EXPECT_EQ(site.digs(), 1);
+}
+
+TEST(Site, LookAnswersLikeUpdateAndLeavesTheSite) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const SiteEvent dig = digs.dig(6.0);
+  const SiteUpdate looked = site.look(dig);
+  EXPECT_EQ(site.updates(), 1);
+  const SiteUpdate updated = site.update(dig);
+  ASSERT_TRUE(looked.density && updated.density);
+  EXPECT_EQ(looked.density->raw_percent, updated.density->raw_percent);
+  EXPECT_EQ(looked.digs, updated.digs);
+}
+
+TEST(Site, TheGroundOfAMachineThatTurnedIsTurned) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const BasePose base = {3.0, 1.0, 0.1, 0.5};
+  const GroundState seen = site.ground_for(base, {1.0, -1.0, 3.0, 1.0}, 0.05);
+  const Eigen::Vector3d place = base.site_from_machine() * Eigen::Vector3d(2.025, 0.025, 0.0);
+  EXPECT_NEAR(height_at(seen.terrain.bank, 2.025, 0.025),
+              height_at(site.ground().terrain.bank, place.x(), place.y()) - 0.1, 1e-9);
+  EXPECT_TRUE(std::isnan(
+      site.ground_for({500.0, 0.0, 0.0, 0.0}, {1.0, -1.0, 3.0, 1.0}, 0.05).terrain.bank.z(3, 3)));
+}
+
+TEST(Site, AnUnmovedMachineSeesTheCellsAsTheyAre) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const HeightMap& bank = site.ground().terrain.bank;
+  const GroundState seen = site.ground_for({}, bank.extent(), site.cell_size());
+  EXPECT_TRUE(
+      (seen.terrain.bank.z == bank.z || (seen.terrain.bank.z.isNaN() && bank.z.isNaN())).all());
+}
+
+TEST(Site, ADigOfATurnedMachineIsMeasuredInItsFrame) {
+  const TemporaryFolder folder;
+  DigsInARow digs(60.0);
+  const BasePose base = {20.0, -7.0, 0.0, 0.7};
+  const auto in_site = [&](SiteEvent event) {
+    event.base = base;
+    event.scan.site_from_scan = base.site_from_machine().matrix();
+    return event;
+  };
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(in_site(digs.scan()));
+  const SiteUpdate update = site.update(in_site(digs.dig(6.0)));
+  ASSERT_TRUE(update.taken);
+  ASSERT_TRUE(update.estimate && update.estimate->density && update.density);
+  EXPECT_TRUE(update.estimate->fallback);
+  EXPECT_NEAR(update.density->percent, 60.0, 3.0 * update.density->sd_percent);
+  const GroundDensity there = site.density_at(base, {5.0, -0.3, 6.0, 0.3}, 0.4);
+  EXPECT_TRUE(there.trustworthy);
+  EXPECT_NEAR(there.percent, update.density->percent, 5.0);
+}
+
+// ---- What is told and refused -----------------------------------------------------------------
+
+TEST(SiteDoubts, AScanThatIsTakenTwiceIsRefused) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  SiteEvent scan = digs.scan();
+  site.update(scan);
+  scan.time += 50.0;
+  EXPECT_NE(error_of([&] {
+              site.update(scan);
+            }).find("this scan is in the site already, as update 1 of 1"),
+            std::string::npos);
+  site.undo();
+  EXPECT_TRUE(site.update(scan).taken);
+}
+
+TEST(SiteDoubts, AnOldScanIsRefused) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  const SiteEvent old = digs.scan();
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  EXPECT_NE(error_of([&] { site.update(old); }).find("older than the last one of the site"),
+            std::string::npos);
+}
+
+TEST(SiteDoubts, AScanOfAnotherPlaceIsNotTaken) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const GroundState before = site.ground();
+  // Out of sight: no ground in common.
+  EXPECT_NE(error_of(
+                [&] {
+                  site.update(digs.scan({100.0, 0.0, 0.0}));
+                },
+                ErrorKind::bad_file),
+            "no error");
+  // Other ground within the extent of the site.
+  DigsInARow elsewhere(50.0, 0.3);
+  elsewhere.scan();
+  const SiteUpdate update = site.update(elsewhere.scan());
+  EXPECT_FALSE(update.taken);
+  EXPECT_FALSE(update.trustworthy);
+  EXPECT_TRUE(has(update.warnings, WarningCode::scan_not_taken));
+  EXPECT_EQ(site.updates(), 1);
+  EXPECT_TRUE((site.ground().seen == before.seen || before.seen.isNaN()).all());
+}
+
+TEST(SiteDoubts, AMachineThatMovedIsToldAndItsScanPutInPlace) {
+  const TemporaryFolder folder;
+  DigsInARow digs(50.0, 0.15);
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const SiteUpdate update = site.update(digs.scan({0.3, 0.0, 0.1}));
+  EXPECT_TRUE(has(update.warnings, WarningCode::registration_beyond_prior));
+  EXPECT_NEAR(height_at(site.ground().terrain.surface(), 6.0, 0.3),
+              height_at(digs.ground().surface(), 6.0, 0.3), 0.015);
+}
+
+TEST(SiteDoubts, ASiteIsOfOneSoilMachineAndLaw) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  const std::string path = folder.file("site");
+  { Site(path, digs.settings(), SiteAccess::write).update(digs.scan()); }
+  SiteSettings other = digs.settings();
+  other.soil.name = "clay";
+  EXPECT_EQ(error_of([&] { Site(path, other); }),
+            path + ": the site is of soil 'loam', not 'clay': begin another site for it");
+  other = digs.settings();
+  other.machine.name = "small";
+  EXPECT_NE(error_of([&] { Site(path, other); }).find("the site is of machine 'zx120'"),
+            std::string::npos);
+  other = digs.settings();
+  other.cell_size = 0.1;
+  EXPECT_NE(error_of([&] { Site(path, other); }).find("0.05 m, not 0.1 m"), std::string::npos);
+}
+
+TEST(SiteDoubts, ASiteThatIsOpenForReadingIsNotChanged) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  const std::string path = folder.file("site");
+  { Site(path, digs.settings(), SiteAccess::write).update(digs.scan()); }
+  Site site(path, digs.settings());
+  EXPECT_NE(error_of([&] { site.update(digs.scan()); }).find("is open for reading"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { site.undo(); }).find("is open for reading"), std::string::npos);
+}
+
+TEST(SiteDoubts, ASiteGrowsToItsLimit) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  SiteEvent far = digs.scan();
+  auto cloud = std::make_shared<Cloud>(*far.scan.clouds.front());
+  for (int i = 0; i < 20000; ++i) cloud->points.emplace_back(5000.0 + 0.001 * i, 4000.0, 0.0);
+  cloud->width = cloud->points.size();
+  far.scan.clouds = {cloud};
+  EXPECT_NE(error_of([&] { site.update(far); }).find("most are 5000000"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace excavplan
