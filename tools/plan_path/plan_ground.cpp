@@ -71,8 +71,8 @@ bool PlanGround::takes_density_under(const DigPlan& plan) {
   return differs;
 }
 
-PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
-                       const SoilKind& soil) {
+PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& inputs,
+                       const Machine& machine, const SoilKind& soil) {
   if (inputs.site.folder) return ground_of_site(inputs, machine, soil);
   PlanGround ground = {{}, density_of(inputs.density), inputs.density, {}, {}, {}, false};
   ground.given = given_ground(inputs.state, machine, soil, ground.density.percent);
@@ -82,8 +82,8 @@ PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
     take_density_of_file(inputs, ground);
     return ground;
   }
-  Site site = make_site(inputs.terrain, planning_extent(machine),
-                        inputs.cell_size.value_or(usual_cell(machine)));
+  Site site = dig_site(motion, machine, inputs.terrain,
+                       inputs.cell_size.value_or(usual_cell(machine)));
   ground.terrain = std::move(site.ground);
   ground.warnings = std::move(site.warnings);
   return ground;

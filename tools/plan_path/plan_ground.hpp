@@ -51,8 +51,8 @@ struct PlanGround {
 /// Checks made before the work. @throws Error (bad_input)
 void check(const PlanGroundInputs& inputs);
 /// @throws Error as make_site(), density_of() and given_ground()
-PlanGround plan_ground(const PlanGroundInputs& inputs, const Machine& machine,
-                       const SoilKind& soil);
+PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& inputs,
+                       const Machine& machine, const SoilKind& soil);
 
 /// On a site the plan is made again where the density there is another (takes_density_under()).
 DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,

@@ -106,7 +106,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   check(inputs.dig_search);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  PlanGround on = plan_ground(inputs.on, machine, soil);
+  PlanGround on = plan_ground(inputs.motion, inputs.on, machine, soil);
   PlanOptions options = options_of(inputs, machine, soil, console);
   const auto area = ground_to_move_on(inputs.motion, inputs.on, on, machine, options);
   DigPlan plan =
