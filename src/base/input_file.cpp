@@ -28,8 +28,8 @@ ssize_t read_at(int descriptor, char* to, std::size_t count, std::uint64_t offse
 
 InputFile::InputFile(std::string path, bool follows)
     : path_(std::move(path)),
-      descriptor_(::open(path_.c_str(),
-                         O_RDONLY | O_NONBLOCK | O_CLOEXEC | (follows ? 0 : O_NOFOLLOW))) {
+      descriptor_(
+          ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | (follows ? 0 : O_NOFOLLOW))) {
   if (descriptor_ < 0) refuse_for("cannot be opened");
   struct stat status {};
   const bool is_known = ::fstat(descriptor_, &status) == 0;

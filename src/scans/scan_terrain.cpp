@@ -212,8 +212,8 @@ ScannedTerrain terrain_from_scan(const Scan& given, const Rectangle& extent, dou
   const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
   const Surface surface = surface_of(seen, cell);
   const HeightMap ground = resampled(surface.height, extent, cell_size, widest_gap);
-  const SeenTops tops =
-      seen_tops(cropped(scan, extent, shaped), ground, {cell_of(seen), dig_ceiling, behind(extent)});
+  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
+                                  {cell_of(seen), dig_ceiling, behind(extent)});
   ScannedTerrain result{terrain_with(ground, tops), scan.doubts};
   if (no_data) result.warnings.push_back(std::move(*no_data));
   const double wide = std::sqrt(enough_for_two / seen.density);

@@ -165,8 +165,7 @@ Score score(const Truth& truth, const BeliefSettings& settings, int grounds, boo
       ++score.readings;
     }
     if (refits) belief.refit();
-    const BelievedDensity found =
-        belief.at({layout->cells.end() - 20, layout->cells.end()});
+    const BelievedDensity found = belief.at({layout->cells.end() - 20, layout->cells.end()});
     const VectorXd expected =
         50.0 + (exact.gain * (ground.surveys.head(digs).array() - 50.0).matrix()).array();
     const VectorXd next = ground.density.tail(20);

@@ -100,11 +100,10 @@ class SurveyedSeries {
     options.soil.kind = series_.soil();
     options.threads = 1;
     if (surveying_.path_is_told) {
-      options.dug_path = DugPath{series_.machine(), dig->path.parameters, dig->path.start_x,
-                                 dig->path.ground_z};
+      options.dug_path =
+          DugPath{series_.machine(), dig->path.parameters, dig->path.start_x, dig->path.ground_z};
     }
-    Answer answer{*dig, estimate_density(scans, law(), options),
-                  settings_.density_percent};
+    Answer answer{*dig, estimate_density(scans, law(), options), settings_.density_percent};
     known_ = series_.in_site(*answer.estimate.ground_after);
     if (std::getenv("DEBUG_BANK")) {
       const HeightMap truth = series_.ground().bank;
@@ -116,9 +115,12 @@ class SurveyedSeries {
           const double off = (now.terrain.bank.z(r, c) - height_at(truth, x, y)) * 0.0025;
           if (std::isnan(off)) continue;
           const bool strip = x > 3.0 && x < 7.2;
-          if (strip && std::abs(y) < 0.45) in += off;
-          else if (strip && std::abs(y) < 1.2) near += off;
-          else far += off;
+          if (strip && std::abs(y) < 0.45)
+            in += off;
+          else if (strip && std::abs(y) < 1.2)
+            near += off;
+          else
+            far += off;
         }
       if (std::getenv("DUMP")) {
         std::map<int, double> by_col, by_row;
@@ -130,12 +132,15 @@ class SurveyedSeries {
             by_col[static_cast<int>(std::floor(x / 0.05))] += off;
             by_row[static_cast<int>(std::floor(y / 0.05))] += off;
           }
-        for (auto& [c, v] : by_col) std::cout << "c" << 0.05 * c << ":" << std::round(1e5 * v) << " ";
+        for (auto& [c, v] : by_col)
+          std::cout << "c" << 0.05 * c << ":" << std::round(1e5 * v) << " ";
         std::cout << "\n";
-        for (auto& [c, v] : by_row) std::cout << "r" << 0.05 * c << ":" << std::round(1e5 * v) << " ";
+        for (auto& [c, v] : by_row)
+          std::cout << "r" << 0.05 * c << ":" << std::round(1e5 * v) << " ";
         std::cout << "\n";
       }
-      std::cout << "   bank too high: in " << in << " near " << near << " far " << far << " half " << 0.5 * series_.machine().bucket.width_outside << "\n";
+      std::cout << "   bank too high: in " << in << " near " << near << " far " << far << " half "
+                << 0.5 * series_.machine().bucket.width_outside << "\n";
     }
     return answer;
   }
@@ -193,20 +198,31 @@ TEST(KnownGround, Bench) {
       SeriesSettings settings;
       settings.layout = layout;
       settings.seed = static_cast<std::uint64_t>(seed);
-      settings.density_percent = 10.0 + 80.0 * std::fmod(0.37 * seed + 0.21 * static_cast<int>(layout), 1.0);
+      settings.density_percent =
+          10.0 + 80.0 * std::fmod(0.37 * seed + 0.21 * static_cast<int>(layout), 1.0);
       SurveyedSeries series(settings, surveying);
       for (int i = 0; i < 10; ++i) {
         std::optional<SurveyedSeries::Answer> answer;
-        try { answer = series.next(); } catch (const Error& error) {
+        try {
+          answer = series.next();
+        } catch (const Error& error) {
           std::cout << name(layout) << " REFUSED " << error.what() << "\n";
-          ++all; ++of_layout;
+          ++all;
+          ++of_layout;
           continue;
         }
-        if (!answer) { std::cout << name(layout) << " no dig\n"; continue; }
+        if (!answer) {
+          std::cout << name(layout) << " no dig\n";
+          continue;
+        }
         print(*answer, std::string(name(layout)) + " " + std::to_string(i));
-        ++all; ++of_layout;
+        ++all;
+        ++of_layout;
         if (answer->is_trusted()) ++trusted;
-        if (answer->is_trusted() && answer->is_inside()) { ++good; ++good_layout; }
+        if (answer->is_trusted() && answer->is_inside()) {
+          ++good;
+          ++good_layout;
+        }
         if (answer->is_trusted() && std::abs(answer->error()) < 5.0) ++near_trusted;
         if (answer->is_trusted()) {
           squares += std::pow(answer->error(), 2);

@@ -82,8 +82,8 @@ PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& input
     take_density_of_file(inputs, ground);
     return ground;
   }
-  Site site = dig_site(motion, machine, inputs.terrain,
-                       inputs.cell_size.value_or(usual_cell(machine)));
+  Site site =
+      dig_site(motion, machine, inputs.terrain, inputs.cell_size.value_or(usual_cell(machine)));
   ground.terrain = std::move(site.ground);
   ground.warnings = std::move(site.warnings);
   return ground;
