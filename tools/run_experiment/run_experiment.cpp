@@ -65,11 +65,11 @@ void declare(Arguments& arguments, Inputs& inputs) {
                     [&] {
                       declare_experiment(arguments, experiment);
                       arguments.only_if({[&inputs] { return inputs.is_simulation(); },
-                                         "only the experiment of section 3 has it"},
-                                        [&] {
-                                          arguments.report(inputs.report);
-                                          declare_experiment_ground(arguments, experiment);
-                                        });
+                                         "only the experiment of section 3 has a page"},
+                                        [&] { arguments.report(inputs.report); });
+                      arguments.only_if({[&inputs] { return inputs.is_simulation(); },
+                                         "only the experiment of section 3 digs on it"},
+                                        [&] { declare_experiment_ground(arguments, experiment); });
                     });
   arguments.machine(inputs.experiment.machine);
   declare_study(arguments, inputs.study);
