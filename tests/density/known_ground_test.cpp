@@ -45,7 +45,7 @@ Scan scan_of_cloud(const std::shared_ptr<const Cloud>& cloud) {
 /// Nothing known of a site.
 GroundState unknown_site() {
   GroundState state;
-  state.terrain = undisturbed(flat_ground({-4.017, -11.017, 13.0, 9.0}, 0.05));
+  state.terrain = undisturbed(flat_ground({-4.017, -20.017, 13.0, 9.0}, 0.05));
   state.terrain.bank.z.setConstant(std::nan(""));
   return state;
 }
@@ -174,6 +174,29 @@ void print(const SurveyedSeries::Answer& answer, const std::string& where) {
             << e.change.cut->fallen << " share " << e.change.cut->bank_share() << " shared "
             << e.shared_with_before << (answer.is_trusted() ? " T" : " -")
             << (answer.is_inside() ? "I" : "o") << codes(e) << "\n";
+  if (std::getenv("DEBUG_N")) {
+    const AreaChange& area = e.change.areas.front();
+    double all = 0.0, stable = 0.0, other = 0.0; int unknown = 0;
+    for (Eigen::Index r = 0; r < area.zone.rows(); ++r)
+      for (Eigen::Index c = 0; c < area.zone.cols(); ++c) {
+        const double d = area.difference.z(r, c) * area.difference.cell_size * area.difference.cell_size;
+        const int z = area.zone(r, c);
+        if (std::isnan(d)) { if (z >= 0) ++unknown; continue; }
+        all += d;
+        if (z < 0) stable += d;
+        else if (e.change.zones[z].kind == ZoneKind::other) other += d;
+      }
+    int nan_before = 0; std::map<int,int> rows;
+    for (Eigen::Index r = 0; r < area.zone.rows(); ++r)
+      for (Eigen::Index c = 0; c < area.zone.cols(); ++c)
+        if (std::isnan(area.difference.z(r, c)) && area.zone(r, c) >= 0) { ++rows[static_cast<int>(std::floor(area.difference.y(r) * 20))]; if (std::isnan(e.before.front().z(r, c))) ++nan_before; }
+    std::cout << "    nan in before " << nan_before << " rows";
+    for (auto& [y, n] : rows) std::cout << " " << y * 0.05 << ":" << n;
+    std::cout << "\n";
+    const double k = bulking_of_density(load_soil(find_data_file("soils/loam.json")), answer.truth);
+    std::cout << "    N true " << (k - 1.0) * answer.dig.bank_cut << " zones " << e.change.spilled.value + e.change.dumped.value - e.change.excavated.value << " all " << all << " stable " << stable << " other " << other << " unknown cells " << unknown << " datum " << area.datum << " ex " << e.change.excavated.value << " sp " << e.change.spilled.value << " du " << e.change.dumped.value << " strewn " << e.change.strewn.value << "\n";
+    for (const ChangeZone& z : e.change.zones) if (z.kind == ZoneKind::other || z.unknown_share > 0.1) std::cout << "      zone " << name(z.kind) << " V " << z.volume.value << " area " << z.area << " unk " << z.unknown_share << " at " << z.extent.x_min << ".." << z.extent.x_max << " " << z.extent.y_min << ".." << z.extent.y_max << "\n";
+  }
 }
 
 TEST(KnownGround, Bench) {

@@ -18,7 +18,7 @@ namespace excavplan::test {
 namespace {
 
 constexpr double deepest = 1.0;  // of a hole [m]
-constexpr Rectangle site_extent = {-4.0, -11.0, 13.0, 9.0};
+constexpr Rectangle site_extent = {-4.0, -20.0, 13.0, 9.0};
 
 double waves(double x, double y, double roughness, std::uint64_t seed) {
   Random random(seed, 9);
@@ -79,7 +79,7 @@ void DigSeries::move() {
   };
   const double n = digs_;
   switch (settings_.layout) {
-    case Layout::apart: place_ = {0.0, cells(-1.8 * std::fmod(n, 5.0))}; break;
+    case Layout::apart: place_ = {0.0, cells(-1.6 * std::fmod(n, 10.0))}; break;
     case Layout::beside: place_ = {0.0, cells(-0.8 * std::fmod(n, 10.0))}; break;
     case Layout::behind: place_ = {cells(-0.35 * n), 0.0}; break;
     case Layout::trench: place_ = {cells(-0.7 * std::fmod(n, 3.0)), 0.0}; break;
