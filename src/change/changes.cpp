@@ -374,8 +374,8 @@ class ChangeReader {
       meaning.what += " around (" + hundredths(zone(p).centre.x()) + ", " +
                       hundredths(zone(p).centre.y()) + ") m";
     }
-    changes_.push_back({meaning.kind, meaning.what, {p}, volume, zone(p).loose, meaning.prior,
-                        meaning.prior});
+    changes_.push_back(
+        {meaning.kind, meaning.what, {p}, volume, zone(p).loose, meaning.prior, meaning.prior});
   }
 
   const std::vector<Area>& areas_;

@@ -14,8 +14,8 @@
 namespace excavplan {
 namespace {
 
-constexpr double sure = 2.0;     // ours: deviations that make a cell of a changed zone one
-constexpr double telling = 5.0;  // ours: where nothing says which cells changed
+constexpr double sure = 2.0;       // ours: deviations that make a cell of a changed zone one
+constexpr double telling = 5.0;    // ours: where nothing says which cells changed
 constexpr double least_sd = 1e-4;  // of a height [m]
 
 enum Cause : int { nothing = 0, dig = 1, something = 2 };
@@ -23,11 +23,10 @@ enum Cause : int { nothing = 0, dig = 1, something = 2 };
 void require_seen(const SeenGround& seen) {
   require_map(seen.surface, "ground that was seen");
   require(std::isfinite(seen.time), "ground that was seen: time", seen.time, "finite");
-  require(seen.common_sd >= 0.0 && std::isfinite(seen.common_sd),
-          "ground that was seen: common_sd", seen.common_sd, "at least 0 m and finite");
+  require(seen.common_sd >= 0.0 && std::isfinite(seen.common_sd), "ground that was seen: common_sd",
+          seen.common_sd, "at least 0 m and finite");
   const auto fits = [&](Eigen::Index rows, Eigen::Index cols) {
-    return rows * cols == 0 ||
-           (rows == seen.surface.z.rows() && cols == seen.surface.z.cols());
+    return rows * cols == 0 || (rows == seen.surface.z.rows() && cols == seen.surface.z.cols());
   };
   require(fits(seen.deviation.rows(), seen.deviation.cols()) &&
               fits(seen.changed.rows(), seen.changed.cols()) &&
@@ -169,9 +168,7 @@ class Updater {
     Eigen::ArrayXXd& ratios = state_.terrain.loose_void_ratio;
     if (ratios.size() == 0 || !fresh_ || !(loose > 0.0)) return;
     double& ratio = ratios(at.row, at.col);
-    const double old = std::isnan(ratio) || swept_below(at)
-                           ? 0.0
-                           : std::min(kept, loose);
+    const double old = std::isnan(ratio) || swept_below(at) ? 0.0 : std::min(kept, loose);
     const double solids = old / (1.0 + ratio) + (loose - old) / (1.0 + *fresh_);
     ratio = old > 0.0 ? loose / solids - 1.0 : *fresh_;
   }

@@ -32,10 +32,10 @@ double taken_of(double loose, double fall, double sd) {
 
 /// One cell of a dig, as heights [m].
 struct CellCut {
-  double loose = 0.0;   ///< that was dug again
-  double bank = 0.0;    ///< cut
-  double fallen = 0.0;  ///< loose soil above the cut; NaN where the surface after is not known
-  double swept = 0.0;   ///< share of the cell where the bucket cut bank
+  double loose = 0.0;    ///< that was dug again
+  double bank = 0.0;     ///< cut
+  double fallen = 0.0;   ///< loose soil above the cut; NaN where the surface after is not known
+  double swept = 0.0;    ///< share of the cell where the bucket cut bank
   bool reached = false;  ///< the bank: the error of `loose` is that of the whole layer
 };
 
@@ -92,21 +92,19 @@ class CutReader {
 void require_known_ground(const KnownGround& known, const HeightMap& before) {
   for (const Eigen::ArrayXXd* layer :
        {&known.loose, &known.loose_sd, &known.swelling, &known.cut, &known.cover}) {
-    const bool fits = layer->size() == 0 || (layer->rows() == before.z.rows() &&
-                                             layer->cols() == before.z.cols());
+    const bool fits = layer->size() == 0 ||
+                      (layer->rows() == before.z.rows() && layer->cols() == before.z.cols());
     if (!fits) {
-      throw Error(ErrorKind::bad_input, "known ground: a layer of " +
-                                            std::to_string(layer->rows()) + " x " +
-                                            std::to_string(layer->cols()) +
-                                            " cells, must be as large as the surfaces, " +
-                                            std::to_string(before.z.rows()) + " x " +
-                                            std::to_string(before.z.cols()));
+      throw Error(ErrorKind::bad_input,
+                  "known ground: a layer of " + std::to_string(layer->rows()) + " x " +
+                      std::to_string(layer->cols()) + " cells, must be as large as the surfaces, " +
+                      std::to_string(before.z.rows()) + " x " + std::to_string(before.z.cols()));
     }
   }
 }
 
 Eigen::ArrayXXi dug_before(const KnownGround& known) {
-  constexpr double least = 0.01;      // ours [m]
+  constexpr double least = 0.01;     // ours [m]
   constexpr Eigen::Index reach = 2;  // ours: floors are not covered everywhere
   Eigen::ArrayXXi dug = Eigen::ArrayXXi::Zero(known.loose.rows(), known.loose.cols());
   for_each_cell(known.loose, [&](Cell at) {

@@ -25,9 +25,9 @@ void find_loose_soil(const KnownGround& known, Area& area);
 /// Makes `before` the bank that was cut and `after` its volume since, with the error of the loose
 /// soil, and states the cut. What rose less what fell stays.
 ///
-/// With d the fall of a cell and l its loose soil, the hole took min(d, l) of that, and d - l of the
-/// bank. Where the bucket cut c of the bank it took all of l, and what lies above its floor has fallen
-/// back: l + c - d.
+/// With d the fall of a cell and l its loose soil, the hole took min(d, l) of that, and d - l of
+/// the bank. Where the bucket cut c of the bank it took all of l, and what lies above its floor has
+/// fallen back: l + c - d.
 void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& change);
 
 }  // namespace excavplan

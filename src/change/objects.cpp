@@ -199,8 +199,9 @@ void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double ce
     if (dug.size() == 0) return z;
     return (dug != 0).select(std::numeric_limits<double>::quiet_NaN(), z);
   };
-  const Eigen::ArrayXXd of_both = excess_of(without(before), cell_size)
-                                      .min(excess_of(without(after), cell_size));  // NaN: not in both
+  const Eigen::ArrayXXd of_both =
+      excess_of(without(before), cell_size)
+          .min(excess_of(without(after), cell_size));  // NaN: not in both
   std::vector<Cell> cells;
   for_each_cell(of_both, [&](Cell at) {
     if (of_both(at.row, at.col) > least_excess) cells.push_back(at);

@@ -55,7 +55,7 @@ struct Area {
   Eigen::ArrayXXd variance;     // of each cell's difference, without the datum [m^2]
   double systematic_rms = 0.0;  // of stripes and doming that were taken off [m]
   std::vector<Object> objects;
-  bool is_cut_told = false;  // what the bucket cut is known (KnownGround::cut)
+  bool is_cut_told = false;                // what the bucket cut is known (KnownGround::cut)
   std::optional<SensorPlace> inferred;     // of the scan after, where nothing says it
   std::optional<PlaceDoubt> place_before;  // of the place that is said, of each scan
   std::optional<PlaceDoubt> place_after;

@@ -45,8 +45,8 @@ struct OutlinedScans {
 
 bool is_given(const Scan& scan) { return !scan.files.empty() || !scan.clouds.empty(); }
 
-/// The cells of a survey of known ground are the ground's, or as many of them together as the points
-/// of the scans need.
+/// The cells of a survey of known ground are the ground's, or as many of them together as the
+/// points of the scans need.
 double cell_on(const GroundState& ground, double needed) {
   constexpr double rounding = 1e-6;
   const double cell = ground.terrain.bank.cell_size;
@@ -134,8 +134,9 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
 DigPath path_of(const DugPath& dug, const HeightMap& before, const DigPathOptions& rules = {}) {
   const GroundProfile profile = profile_under_bucket(before, dug.machine);
   const double lifted = dug.start_z ? *dug.start_z - profile(*dug.start_x) : 0.0;
-  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
-                                  [&](double x) { return profile(x) + lifted; }, rules);
+  const auto path = make_dig_path(
+      dug.machine, dug.parameters, *dug.start_x, [&](double x) { return profile(x) + lifted; },
+      rules);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
   }
@@ -323,7 +324,7 @@ double shared_share(const VolumeChange& change) {
 /// Little bank in the cut says little of its density.
 void judge_bank(DensityEstimate& estimate) {
   constexpr double least = 1.0 / 3.0;  // ours
-  if (!estimate.change.cut) return;  // the paper's volumes
+  if (!estimate.change.cut) return;    // the paper's volumes
   const KnownCut& cut = *estimate.change.cut;
   if (!estimate.density || cut.bank_share() >= least) return;
   estimate.warnings.emplace_back(
@@ -458,8 +459,8 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
       judge_bank(estimate);
       const double expected =
           expected_fallback(laws.law, estimate.density ? estimate.density->percent : 50.0);
-      estimate.ground_after = ground_after(
-          options, {surfaces.dig.surfaces, surface, *volumes.known, expected});
+      estimate.ground_after =
+          ground_after(options, {surfaces.dig.surfaces, surface, *volumes.known, expected});
     }
     judge_scans(estimate);
   }

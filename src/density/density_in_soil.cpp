@@ -169,9 +169,9 @@ class PayloadReader {
 };
 
 /// Finds the density by the solids of a dig whose heap is out of sight. The bank B that was cut
-/// weighs as much as the mass m that was carried away and what rose in sight on the whole, R of loose
-/// soil: rho = (m + rho_loose R) / B. Where the floor of the cut is not known, soil F that the law
-/// expects on it belongs to both.
+/// weighs as much as the mass m that was carried away and what rose in sight on the whole, R of
+/// loose soil: rho = (m + rho_loose R) / B. Where the floor of the cut is not known, soil F that
+/// the law expects on it belongs to both.
 class SolidsReader {
  public:
   SolidsReader(const DensityLaw& law, const SoilKind& soil, const VolumeChange& change,
@@ -207,8 +207,8 @@ class SolidsReader {
   double density_with(double fallback) {
     fallback_ = fallback;
     bank_ = change_.before.value + fallback;
-    loose_density_ = soil_.specific_gravity * water_density * (1.0 + water_) /
-                     (1.0 + soil_.void_ratio_loose);
+    loose_density_ =
+        soil_.specific_gravity * water_density * (1.0 + water_) / (1.0 + soil_.void_ratio_loose);
     const double mass = options_.payload_mass->value;
     bulk_density_ = (mass + loose_density_ * (change_.after.value + fallback)) / bank_;
     const double as_wet = (1.0 + soil_.water_content) / (1.0 + water_);
@@ -221,9 +221,9 @@ class SolidsReader {
   double measured_sd() const {
     constexpr double of_expected = 0.5;  // ours: sd of a fallback that was not measured, as a share
     const Eigen::Vector3d by_volume(-bulk_density_, loose_density_, loose_density_);
-    const double both = (loose_density_ - bulk_density_) *
-                        std::hypot(known_tracking_sd * change_.cut->swept_area,
-                                   of_expected * fallback_);
+    const double both =
+        (loose_density_ - bulk_density_) *
+        std::hypot(known_tracking_sd * change_.cut->swept_area, of_expected * fallback_);
     const double variance = by_volume.dot(change_.errors.total() * by_volume) + both * both +
                             std::pow(options_.payload_mass->sd, 2);
     return per_log_ * std::sqrt(variance) / (bank_ * bulk_density_);

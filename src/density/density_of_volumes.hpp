@@ -27,8 +27,8 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
 /// Sets density, readings, soils, payload, warnings and trust of an estimate with a bulking factor.
 void set_density(DensityEstimate& estimate, const LawsForDig& laws, const DensityOptions& options);
 
-/// The same by the mass of the payload in known ground, where the heap is out of sight. Does nothing
-/// without mass, kind of soil, or a hole that was seen.
+/// The same by the mass of the payload in known ground, where the heap is out of sight. Does
+/// nothing without mass, kind of soil, or a hole that was seen.
 void set_density_by_solids(DensityEstimate& estimate, const LawsForDig& laws,
                            const DensityOptions& options);
 

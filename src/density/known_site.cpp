@@ -18,10 +18,10 @@ namespace excavplan {
 namespace {
 
 constexpr double standing = 0.2;  // ours: nearer to the top of a known obstacle it still stands [m]
-constexpr double in_the_way = 0.3;  // ours: a thing as high is an obstacle [m]
+constexpr double in_the_way = 0.3;       // ours: a thing as high is an obstacle [m]
 constexpr double between_points = 0.25;  // ours: a gap as wide counts as seen [m]
 constexpr double filled_sd = 0.03;       // ours: of a height in it [m]
-constexpr int samples_per_cell = 8;  // of the tip's line
+constexpr int samples_per_cell = 8;      // of the tip's line
 
 Eigen::ArrayXXd known_or(const Eigen::ArrayXXd& layer, double other) {
   return layer.isNaN().select(other, layer);
@@ -73,8 +73,7 @@ struct RowsUnder {
 /// By how much the ground that was known lies above the scan before where nothing changed.
 double offset_of(const GroundState& ground, const SurfacePair& surfaces, const AreaChange& area) {
   const HeightMap& before = surfaces.before.height;
-  const Eigen::ArrayXXd known =
-      layer_on(before, ground.terrain.bank, ground.terrain.surface().z);
+  const Eigen::ArrayXXd known = layer_on(before, ground.terrain.bank, ground.terrain.surface().z);
   std::vector<double> offsets;
   for_each_cell(known, [&](Cell at) {
     const double offset = known(at.row, at.col) - before.z(at.row, at.col);
@@ -91,9 +90,8 @@ int cause_of(const VolumeChange& change, int zone) {
 /// Ground between the points of a scan is as high as theirs.
 void fill_between_points(SeenGround& seen) {
   const HeightMap& map = seen.surface;
-  const Eigen::ArrayXXd filled =
-      resampled(map, map.extent(), map.cell_size, between_points).z.block(0, 0, map.z.rows(),
-                                                                         map.z.cols());
+  const Eigen::ArrayXXd filled = resampled(map, map.extent(), map.cell_size, between_points)
+                                     .z.block(0, 0, map.z.rows(), map.z.cols());
   const Eigen::ArrayXXd own = seen.deviation;
   seen.deviation = (map.z.isNaN() && !filled.isNaN()).select(filled_sd, own);
   seen.surface.z = (map.z.isNaN() && seen.obstacles.isNaN()).select(filled, map.z);
@@ -125,8 +123,8 @@ SeenGround seen_after(const DigInGround& dig, double offset) {
   const HeightMap& before = dig.surfaces.before.height;
   SeenGround seen;
   seen.surface = realigned(dig.surfaces.after.height, dig.surfaces.alignment);
-  seen.surface.z = area.difference.z.isNaN().select(seen.surface.z - area.datum,
-                                                    before.z + area.difference.z);
+  seen.surface.z =
+      area.difference.z.isNaN().select(seen.surface.z - area.datum, before.z + area.difference.z);
   const double stable = 0.5 * area.noise_sd * area.noise_sd;
   const Eigen::ArrayXXd& own = dig.surfaces.after.variance;
   seen.deviation.setConstant(before.z.rows(), before.z.cols(), stable);
@@ -155,8 +153,7 @@ SeenGround seen_after(const DigInGround& dig, double offset) {
 SeenGround seen_before(const GroundState& ground, const Surface& before, double offset) {
   SeenGround seen;
   seen.surface = before.height;
-  const Eigen::ArrayXXd known =
-      layer_on(before.height, ground.terrain.bank, ground.terrain.bank.z);
+  const Eigen::ArrayXXd known = layer_on(before.height, ground.terrain.bank, ground.terrain.bank.z);
   seen.surface.z = known.isNaN().select(before.height.z + offset, std::nan(""));
   if (before.variance.size() > 0) seen.deviation = before.variance.sqrt();
   seen.changed.setZero(before.height.z.rows(), before.height.z.cols());
@@ -228,8 +225,7 @@ void add_cut(const DigPath& path, const Machine& machine, const HeightMap& befor
     if (!(floor.share > 0.0)) continue;
     for (Eigen::Index row = rows.first; row < rows.end; ++row) {
       const Eigen::Index inside = rows.inside(row);
-      const double cut =
-          before.z(inside, col) - known.loose(inside, col) - floor.height;
+      const double cut = before.z(inside, col) - known.loose(inside, col) - floor.height;
       known.cover(row, col) = floor.share * rows.cover(row);
       if (cut > 0.0) known.cut(row, col) = known.cover(row, col) * cut;
     }

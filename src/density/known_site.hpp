@@ -36,8 +36,8 @@ void leave_out_obstacles(const GroundState& ground, Surface& before);
 /// Loose soil on the grid of a map. @param soil  whose loose state dug soil takes; null: unknown
 KnownGround known_ground_on(const HeightMap& grid, const GroundState& ground, const SoilKind* soil);
 
-/// Adds what a path cut of the bank. A cell at the edge of the bucket shows the mean of what was cut
-/// and what stands beside: under the bucket its bank is that of the cell inside.
+/// Adds what a path cut of the bank. A cell at the edge of the bucket shows the mean of what was
+/// cut and what stands beside: under the bucket its bank is that of the cell inside.
 void add_cut(const DigPath& path, const Machine& machine, const HeightMap& before,
              KnownGround& known);
 

@@ -26,8 +26,7 @@ double cell_value(const HeightMap& grid, const Eigen::ArrayXXd& layer, const Eig
   const bool is_on = place.x() >= 0.0 && place.y() >= 0.0 &&
                      place.x() < static_cast<double>(layer.cols()) &&
                      place.y() < static_cast<double>(layer.rows());
-  return is_on ? layer(static_cast<Index>(place.y()), static_cast<Index>(place.x()))
-               : std::nan("");
+  return is_on ? layer(static_cast<Index>(place.y()), static_cast<Index>(place.x())) : std::nan("");
 }
 
 Eigen::ArrayXXd layer_on(const HeightMap& other, const HeightMap& grid,
@@ -42,8 +41,8 @@ Eigen::ArrayXXd layer_on(const HeightMap& other, const HeightMap& grid,
     double sum = 0.0;
     Index known = 0;
     Index inside = 0;
-    for (Index row = first_centre(from.y(), layer.rows());
-         row < first_centre(to.y(), layer.rows()); ++row) {
+    for (Index row = first_centre(from.y(), layer.rows()); row < first_centre(to.y(), layer.rows());
+         ++row) {
       for (Index col = first_centre(from.x(), layer.cols());
            col < first_centre(to.x(), layer.cols()); ++col) {
         ++inside;

@@ -21,15 +21,17 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A trench of 2 m x 0.8 m through a layer of loose soil, 0.10 m thick over its half, 0.30 m deep in
-/// all; its soil lies 4 m away.
+/// A trench of 2 m x 0.8 m through a layer of loose soil, 0.10 m thick over its half, 0.30 m deep
+/// in all; its soil lies 4 m away.
 struct Trench {
   double bulking = 1.25;
   double fallen = 0.0;  ///< loose soil on its floor [m]
   double loose = 0.10;  ///< [m]
 
   static bool is_in(double x, double y) { return x > 0.0 && x < 2.0 && std::abs(y) < 0.4; }
-  double loose_at(double x, double y) const { return x > 1.0 && x < 2.6 && std::abs(y) < 1.0 ? loose : 0.0; }
+  double loose_at(double x, double y) const {
+    return x > 1.0 && x < 2.6 && std::abs(y) < 1.0 ? loose : 0.0;
+  }
   double cut_at(double x, double y) const { return is_in(x, y) ? 0.30 - loose_at(x, y) : 0.0; }
 
   double loose_dug() const { return loose * 1.0 * 0.8; }
@@ -60,7 +62,8 @@ struct Trench {
     const auto layer = [&](const std::function<double(double, double)>& value) {
       Eigen::ArrayXXd all(map.z.rows(), map.z.cols());
       for (Eigen::Index row = 0; row < all.rows(); ++row) {
-        for (Eigen::Index col = 0; col < all.cols(); ++col) all(row, col) = value(map.x(col), map.y(row));
+        for (Eigen::Index col = 0; col < all.cols(); ++col)
+          all(row, col) = value(map.x(col), map.y(row));
       }
       return all;
     };

@@ -10,7 +10,7 @@
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/simulators.hpp>
 
 #include "base/angles.hpp"
 
@@ -64,7 +64,9 @@ DigSeries::DigSeries(const SeriesSettings& settings)
   site_ = undisturbed(surface);
 }
 
-GroundState DigSeries::in_frame(GroundState state) const { return moved(std::move(state), -place_); }
+GroundState DigSeries::in_frame(GroundState state) const {
+  return moved(std::move(state), -place_);
+}
 GroundState DigSeries::in_site(GroundState state) const { return moved(std::move(state), place_); }
 
 Terrain DigSeries::ground() const {
@@ -79,11 +81,21 @@ void DigSeries::move() {
   };
   const double n = digs_;
   switch (settings_.layout) {
-    case Layout::apart: place_ = {0.0, cells(-1.6 * std::fmod(n, 10.0))}; break;
-    case Layout::beside: place_ = {0.0, cells(-0.8 * std::fmod(n, 10.0))}; break;
-    case Layout::behind: place_ = {cells(-0.35 * n), 0.0}; break;
-    case Layout::trench: place_ = {cells(-0.7 * std::fmod(n, 3.0)), 0.0}; break;
-    case Layout::inside: place_ = {cells(random_.uniform(-0.15, 0.15)), 0.0}; break;
+    case Layout::apart:
+      place_ = {0.0, cells(-1.6 * std::fmod(n, 10.0))};
+      break;
+    case Layout::beside:
+      place_ = {0.0, cells(-0.8 * std::fmod(n, 10.0))};
+      break;
+    case Layout::behind:
+      place_ = {cells(-0.35 * n), 0.0};
+      break;
+    case Layout::trench:
+      place_ = {cells(-0.7 * std::fmod(n, 3.0)), 0.0};
+      break;
+    case Layout::inside:
+      place_ = {cells(random_.uniform(-0.15, 0.15)), 0.0};
+      break;
   }
   ++digs_;
 }
@@ -93,8 +105,7 @@ std::optional<DigPath> DigSeries::path_for_next() {
   const GroundProfile profile = boom_plane_profile(ground());
   const double weaker = 1.0 - 0.005 * settings_.density_percent;
   for (int i = 0; i < tries; ++i) {
-    const DigParameters parameters = {random_.uniform(0.5, 1.0),
-                                      random_.uniform(0.3, 0.6) * weaker,
+    const DigParameters parameters = {random_.uniform(0.5, 1.0), random_.uniform(0.3, 0.6) * weaker,
                                       random_.uniform(0.8, 2.0)};
     const double start = 6.8 + random_.uniform(-0.2, 0.2);
     const auto path = make_dig_path(machine_, parameters, start, profile);
@@ -109,7 +120,8 @@ std::optional<DigPath> DigSeries::path_for_next() {
 std::optional<SeriesDig> DigSeries::dig() {
   constexpr int tries = 12;
   constexpr double least_payload = 0.1;  // [m^3]: nobody digs for less
-  const HeightMapSimulator simulator(machine_, soil_, settings_.density_percent);
+  const auto simulator =
+      simulator_of_word(settings_.simulator).make(machine_, soil_, settings_.density_percent);
   const double across = settings_.layout == Layout::behind ? 2.5 : 3.2;
   for (int i = 0; i < tries; ++i) {
     const auto path = path_for_next();
@@ -120,7 +132,7 @@ std::optional<SeriesDig> DigSeries::dig() {
     DigOptions options;
     if (settings_.heap_in_sight) options.dump_at = dug.dump_at;
     const Terrain before = ground();
-    const DigResult result = simulator.dig(before, *path, options);
+    const DigResult result = simulator->dig(before, *path, options);
     if (result.stall || result.payload_volume < least_payload) continue;
     apply(result.patch, site_);
     dug.loose_before = volume_of(before.loose, settings_.cell);

@@ -119,8 +119,9 @@ struct VolumeChange {
   Measured excavated;  ///< the hole
   Measured spilled;    ///< soil that rose beside it
   Measured dumped;     ///< the heap
-  Measured before;  ///< undisturbed volume of the dug soil: the hole; with `cut` the bank cut
-  Measured after;   ///< its loose volume: spill and heap; with `cut` `before` and what rose on the whole
+  Measured before;     ///< undisturbed volume of the dug soil: the hole; with `cut` the bank cut
+  Measured
+      after;  ///< its loose volume: spill and heap; with `cut` `before` and what rose on the whole
   /// Change of the ground that did not change enough for a zone, within 0.6 m of hole, spill and
   /// heap and above that farther away: the sum without a threshold
   Measured outside;
@@ -129,9 +130,9 @@ struct VolumeChange {
   VolumeErrors errors;                   ///< the variances by source
   std::optional<KnownCut> cut;           ///< of a dig in ground that is known
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();  ///< of `errors`: what the scan before made
-  std::vector<ChangeZone> zones;         ///< of all areas
-  std::vector<AreaChange> areas;         ///< one for a whole scene, two for a dig and a dump area
-  std::vector<Warning> warnings;         ///< codes: measure_change()
+  std::vector<ChangeZone> zones;                     ///< of all areas
+  std::vector<AreaChange> areas;  ///< one for a whole scene, two for a dig and a dump area
+  std::vector<Warning> warnings;  ///< codes: measure_change()
   std::vector<AttributedChange> attribution;  ///< changes that are open
   std::vector<Reading> readings;  ///< of the scene, likeliest first; empty if one alone is likely
 };

@@ -7,8 +7,8 @@
 #include <excavplan/base/measured.hpp>
 
 /// @file
-/// What is known of the ground before a dig beside its surface, for measure_change(): its loose soil
-/// and what the bucket cut (docs/methods.md#known-ground).
+/// What is known of the ground before a dig beside its surface, for measure_change(): its loose
+/// soil and what the bucket cut (docs/methods.md#known-ground).
 
 namespace excavplan {
 
@@ -17,8 +17,8 @@ struct KnownGround {
   Eigen::ArrayXXd loose;     ///< thickness of the loose soil [m], >= 0; NaN counts as none
   Eigen::ArrayXXd loose_sd;  ///< of it, independent from cell to cell [m]; NaN counts as 0
   double common_sd = 0.005;  ///< of it in all cells alike [m]; ours: two registrations
-  /// What loose soil gains when it is dug again, as a share of its volume: it was compacted since it
-  /// was dug. Empty: nothing.
+  /// What loose soil gains when it is dug again, as a share of its volume: it was compacted since
+  /// it was dug. Empty: nothing.
   Eigen::ArrayXXd swelling;
   Eigen::ArrayXXd cut;    ///< bank that the bucket cut [m], >= 0; empty: its path is not told
   Eigen::ArrayXXd cover;  ///< share of each cell that it swept, as large as `cut`

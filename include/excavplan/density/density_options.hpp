@@ -36,9 +36,9 @@ enum class VolumeMethod {
 /// The dig as driven, for a law of digs along this path. With its start, which needs scans in the
 /// site frame, the soil that fell back into the cut is measured too.
 struct DugPath {
-  Machine machine;                ///< that drove it
-  DigParameters parameters;       ///< of the path
-  std::optional<double> start_x;  ///< where the path enters the ground [m]
+  Machine machine;                     ///< that drove it
+  DigParameters parameters;            ///< of the path
+  std::optional<double> start_x;       ///< where the path enters the ground [m]
   std::optional<double> start_z = {};  ///< and how high; else by the scan before [m]
 };
 

@@ -41,8 +41,8 @@ struct DensityEstimate {
   /// Volumes, their covariance, zones and height change. Zones and height change are those of the
   /// surface for both methods.
   VolumeChange change;
-  std::vector<HeightMap> before;                 ///< the ground before, of each area of `change`
-  std::optional<Measured> bulking;               ///< k as the scans give it [-]
+  std::vector<HeightMap> before;    ///< the ground before, of each area of `change`
+  std::optional<Measured> bulking;  ///< k as the scans give it [-]
   /// If the path that was dug is known. In known ground `bulking` is already of the whole cut.
   std::optional<Fallback> fallback;
   BlockReport blocks;                            ///< voids between blocks of hard soil
@@ -64,7 +64,7 @@ struct DensityEstimate {
   /// Of the variance of `bulking` by the scans, what the scan before made: two digs that share a
   /// scan, after the one and before the other, err by it in opposite directions [-].
   double shared_with_before = 0.0;
-  std::optional<GroundState> ground_after;  ///< if the ground before is known
+  std::optional<GroundState> ground_after;            ///< if the ground before is known
   std::optional<ScanRegistration> dump_registration;  ///< if the dump area has scans of its own
 
   /// The density for plan_dig(); nothing where there is none.
