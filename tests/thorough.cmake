@@ -87,7 +87,8 @@ set(thorough_density_test
   Successive.IntervalsHoldTheTruthAsOftenAsTheyState
   EstimateDensity.HalvesOfARealPairAgreeWithinTheirIntervals
   DensityByLoads.HarderSoilTakesMoreWorkAndSoilsScatter
-  DensityByLoads.LoadsOfAnotherDigAreNotUsedAndEndTrust)
+  DensityByLoads.LoadsOfAnotherDigAreNotUsedAndEndTrust
+  KnownGround/SurveysInARow.AreTrustedAndInsideInAllLayouts/*)
 # Studies and field experiments, whose parts have tests of their own.
 set(thorough_experiments_test
   FieldExperimentTest.RepeatsItselfForAnyNumberOfThreadsAndNotForAnotherSeed

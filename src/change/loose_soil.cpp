@@ -103,6 +103,17 @@ void require_known_ground(const KnownGround& known, const HeightMap& before) {
   }
 }
 
+Eigen::ArrayXXi dug_before(const KnownGround& known) {
+  constexpr double least = 0.01;     // ours [m]
+  constexpr Eigen::Index reach = 2;  // ours: floors are not covered everywhere
+  Eigen::ArrayXXi dug = Eigen::ArrayXXi::Zero(known.loose.rows(), known.loose.cols());
+  for_each_cell(known.loose, [&](Cell at) {
+    if (!(known.loose(at.row, at.col) > least)) return;
+    for_each_around(known.loose, at, reach, [&](Cell n) { dug(n.row, n.col) = 1; });
+  });
+  return dug;
+}
+
 void find_loose_soil(const KnownGround& known, Area& area) {
   area.is_cut_told = known.cut.size() > 0;
   const double cell_area = area.grid.cell_size * area.grid.cell_size;

@@ -170,12 +170,13 @@ std::optional<Step> wall_across(const Eigen::ArrayXXd& z, Cell at) {
 
 /// Faces of walls that stand in both scans: how high a cell of them is depends on how many points
 /// of the face it holds, which soil against the wall hides.
-void blank_faces(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after) {
+/// @param dug  1 on walls of earlier digs, which are soil
+void blank_faces(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, const Eigen::ArrayXXi& dug) {
   constexpr double between = 0.05;  // ours, of the step
   std::vector<Cell> faces;
   for_each_cell(before, [&](Cell at) {
     const auto step = wall_across(before, at);
-    if (!step) return;
+    if (!step || (dug.size() > 0 && dug(at.row, at.col) != 0)) return;
     const double share = (before(at.row, at.col) - step->low) / (step->high - step->low);
     if (share > between && share < 1.0 - between) faces.push_back(at);
   });
@@ -186,14 +187,21 @@ void blank_faces(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after) {
 
 /// Walls, masts and buildings that stand in both scans, and what lies right beside them: their
 /// cells are as high as the points of a face that fell into them, which no two scans share.
-void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell_size) {
+/// @param dug  1 in holes of earlier digs, above which nothing stands
+void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell_size,
+                      const Eigen::ArrayXXi& dug) {
   constexpr double beside = 1.5;  // cells
   const Eigen::ArrayXXd lower = before.min(after);
   const double range =
       lower.isNaN().select(-1e30, lower).maxCoeff() - lower.isNaN().select(1e30, lower).minCoeff();
   if (range < least_excess) return;
+  const auto without = [&](const Eigen::ArrayXXd& z) -> Eigen::ArrayXXd {
+    if (dug.size() == 0) return z;
+    return (dug != 0).select(std::numeric_limits<double>::quiet_NaN(), z);
+  };
   const Eigen::ArrayXXd of_both =
-      excess_of(before, cell_size).min(excess_of(after, cell_size));  // NaN: not in both
+      excess_of(without(before), cell_size)
+          .min(excess_of(without(after), cell_size));  // NaN: not in both
   std::vector<Cell> cells;
   for_each_cell(of_both, [&](Cell at) {
     if (of_both(at.row, at.col) > least_excess) cells.push_back(at);
@@ -208,13 +216,13 @@ void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double ce
 bool is_beside_wall(const Eigen::ArrayXXd& z, Cell at) { return wall_across(z, at).has_value(); }
 
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
-                                     double cell_size, double margin) {
+                                     double cell_size, double margin, const Eigen::ArrayXXi& dug) {
   std::vector<Object> objects = standing(after, before, cell_size, margin);
   std::vector<Object> gone = standing(before, after, cell_size, margin);
   blank(after, objects);
   blank(before, gone);
-  blank_faces(before, after);
-  blank_structures(before, after, cell_size);
+  blank_faces(before, after, dug);
+  blank_structures(before, after, cell_size, dug);
   // Soil lies level with steep sides only where it was dug, so that a thing before may lie
   // anywhere.
   std::vector<Object> low = lying(before, after, cell_size, margin, false);

@@ -28,11 +28,13 @@ struct Object {
 /// dug soil stands at 28 to 45 degrees; heaps of blocks are as rough as the blocks are large.
 ///
 /// Cells on the face of a wall that stands in both scans become unknown in both: their height is
-/// that of a mixture of wall, face and ground, which soil against the wall changes.
+/// that of a mixture of wall, face and ground, which soil against the wall changes. Not so where
+/// `dug` is 1: walls of earlier digs in known ground.
 ///
 /// @param margin by which objects are widened, at least 1.5 (ours); 0: not at all [cell]
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
-                                     double cell_size, double margin);
+                                     double cell_size, double margin,
+                                     const Eigen::ArrayXXi& dug = {});
 
 /// True if two opposite neighbours of the cell differ by more than 0.5 m (ours).
 bool is_beside_wall(const Eigen::ArrayXXd& z, Cell at);

@@ -253,7 +253,7 @@ std::optional<SensorPlace> complete_place(Surface& surface) {
   return inferred;
 }
 
-Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
+Scans prepared(const SurfacePair& pair, const ChangeOptions& options, const Eigen::ArrayXXi& dug,
                std::vector<Object>& objects) {
   if (!same_grid(pair.before.height, pair.after.height)) {
     throw Error(ErrorKind::bad_input,
@@ -279,7 +279,7 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
     scans.variance_after = after.variance;
   }
   objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell_size,
-                             options.margin / scans.before.cell_size);
+                             options.margin / scans.before.cell_size, dug);
   const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   const Eigen::Index known = difference.size() - difference.isNaN().count();
   if (known < fewest_known_cells) {
@@ -355,9 +355,9 @@ void predict_errors(Area& area, const HeightMap& before, const Alignment& left) 
 
 }  // namespace
 
-Area survey(const SurfacePair& pair, const ChangeOptions& options) {
+Area survey(const SurfacePair& pair, const ChangeOptions& options, const Eigen::ArrayXXi& dug) {
   Area area;
-  Scans scans = prepared(pair, options, area.objects);
+  Scans scans = prepared(pair, options, dug, area.objects);
   area.place_before = doubt_of_place(pair.before);
   area.place_after = doubt_of_place(pair.after);
   area.grid.origin = scans.before.origin;

@@ -66,6 +66,7 @@ struct Area {
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid or share fewer than 100 known
 ///         cells
-Area survey(const SurfacePair& pair, const ChangeOptions& options);
+/// @param dug  1 on and beside soil of earlier digs; empty: not known
+Area survey(const SurfacePair& pair, const ChangeOptions& options, const Eigen::ArrayXXi& dug = {});
 
 }  // namespace excavplan

@@ -180,14 +180,15 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
     require_surface(pair->after, "surface after");
     require_alignment(pair->alignment, "change of the ground");
   }
+  if (known != nullptr) require_known_ground(*known, pairs.front()->before.height);
   std::vector<Area> areas;
   std::vector<const HeightMap*> before;
   for (const SurfacePair* pair : pairs) {
-    areas.push_back(survey(*pair, options));
+    const bool is_known = known != nullptr && areas.empty();
+    areas.push_back(is_known ? survey(*pair, options, dug_before(*known)) : survey(*pair, options));
     before.push_back(&pair->before.height);
   }
   if (known != nullptr) {
-    require_known_ground(*known, *before.front());
     find_loose_soil(*known, areas.front());
   }
   const Attribution attribution = attribute(areas, options);

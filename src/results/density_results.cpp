@@ -176,10 +176,12 @@ void add_bulking(const DensityEstimate& estimate, Json& json) {
     if (const auto interval = bulking_interval(estimate.change)) {
       json["bulking_factor_interval"] = *interval;
     }
+    json["density_without_fallback_percent"] = estimate.density_without_fallback;
+  }
+  if (estimate.density) {
     json["density_raw_percent"] = estimate.density->raw_percent;
     json["density_sd_given_law_percent"] = estimate.density->sd_given_law_percent;
     json.update(density_json(*estimate.density));
-    json["density_without_fallback_percent"] = estimate.density_without_fallback;
   }
   json["bulking_factor_corrected"] = nullptr;
   json["bulking_factor_corrected_sd"] = nullptr;
@@ -216,7 +218,6 @@ Json estimate_json(const DensityEstimate& estimate) {
   if (estimate.loads) json["density_by_loads"] = loads_json(*estimate.loads);
   json["prior"] = nullptr;
   if (estimate.successive) json["prior"] = prior_json(*estimate.successive);
-  json["bank_share"] = nullptr;
   if (const auto& cut = estimate.change.cut) {
     json["bank_share"] = cut->bank_share();
     add_measured(json["volume"], "loose_dug", cut->loose, "_m3");

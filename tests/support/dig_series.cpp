@@ -10,7 +10,7 @@
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/simulators.hpp>
 
 #include "base/angles.hpp"
 
@@ -18,7 +18,7 @@ namespace excavplan::test {
 namespace {
 
 constexpr double deepest = 1.0;  // of a hole [m]
-constexpr Rectangle site_extent = {-4.0, -11.0, 13.0, 9.0};
+constexpr Rectangle site_extent = {-4.0, -20.0, 13.0, 9.0};
 
 double waves(double x, double y, double roughness, std::uint64_t seed) {
   Random random(seed, 9);
@@ -82,7 +82,7 @@ void DigSeries::move() {
   const double n = digs_;
   switch (settings_.layout) {
     case Layout::apart:
-      place_ = {0.0, cells(-1.8 * std::fmod(n, 5.0))};
+      place_ = {0.0, cells(-1.6 * std::fmod(n, 10.0))};
       break;
     case Layout::beside:
       place_ = {0.0, cells(-0.8 * std::fmod(n, 10.0))};
@@ -120,7 +120,8 @@ std::optional<DigPath> DigSeries::path_for_next() {
 std::optional<SeriesDig> DigSeries::dig() {
   constexpr int tries = 12;
   constexpr double least_payload = 0.1;  // [m^3]: nobody digs for less
-  const HeightMapSimulator simulator(machine_, soil_, settings_.density_percent);
+  const auto simulator =
+      simulator_of_word(settings_.simulator).make(machine_, soil_, settings_.density_percent);
   const double across = settings_.layout == Layout::behind ? 2.5 : 3.2;
   for (int i = 0; i < tries; ++i) {
     const auto path = path_for_next();
@@ -131,7 +132,7 @@ std::optional<SeriesDig> DigSeries::dig() {
     DigOptions options;
     if (settings_.heap_in_sight) options.dump_at = dug.dump_at;
     const Terrain before = ground();
-    const DigResult result = simulator.dig(before, *path, options);
+    const DigResult result = simulator->dig(before, *path, options);
     if (result.stall || result.payload_volume < least_payload) continue;
     apply(result.patch, site_);
     dug.loose_before = volume_of(before.loose, settings_.cell);

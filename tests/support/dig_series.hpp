@@ -18,7 +18,7 @@
 #include "base/random.hpp"
 
 /// @file
-/// Digs in a row on one site by the built-in simulator, each with the scan after it, even in plan.
+/// Digs in a row on one site by a built-in simulator, each with the scan after it, even in plan.
 /// The truth is that of the simulator: bank, loose soil and density of the ground.
 
 namespace excavplan::test {
@@ -38,6 +38,7 @@ struct SeriesSettings {
   double points_per_m2 = 2500.0;  ///< of a scan
   double cell = 0.05;             ///< of the simulated ground [m]
   bool heap_in_sight = true;      ///< else the soil goes out of sight
+  const char* simulator = "height-map";
 };
 
 /// One dig of a series, in the frame of the machine that dug it.
