@@ -108,8 +108,12 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, Gro
   if (is_apart) in_site.options.joint_work = std::nullopt;
   DensityEstimate estimate = estimate_in(in_site, settings, ground);
   result.fits = fits_ground(estimate);
-  result.ground = result.fits ? std::move(*estimate.ground_after) : std::move(ground);
-  if (is_apart && result.fits) estimate = estimate_at_machine(event, settings, ground);
+  if (result.fits) {
+    result.ground = std::move(*estimate.ground_after);
+    if (is_apart) estimate = estimate_at_machine(event, settings, ground);
+  } else {
+    result.ground = std::move(ground);
+  }
   hold_void_ratios(settings.soil, result.ground.terrain.loose_void_ratio);
   if (result.fits && event.dug) {
     compact_under_tracks(settings, event.base, event.time, result.ground);
