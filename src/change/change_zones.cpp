@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "base/statistics.hpp"
-#include "ground/area_sums.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/noise_model.hpp"
+#include "ground/window.hpp"
 
 namespace excavplan {
 namespace {

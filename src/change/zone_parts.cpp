@@ -9,10 +9,10 @@
 
 #include "base/statistics.hpp"
 #include "change/zone_shape.hpp"
-#include "ground/area_sums.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/noise_model.hpp"
 #include "ground/slopes.hpp"
+#include "ground/window.hpp"
 
 namespace excavplan {
 namespace {

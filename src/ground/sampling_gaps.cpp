@@ -8,11 +8,11 @@
 #include <limits>
 
 #include "base/statistics.hpp"
-#include "ground/area_sums.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/plane_fit.hpp"
 #include "ground/slopes.hpp"
+#include "ground/window.hpp"
 
 namespace excavplan {
 namespace {

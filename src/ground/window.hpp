@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include "ground/grid_cells.hpp"
+
+/// @file
+/// Of the cells in a window around each cell. Private to the project.
 
 namespace excavplan {
 
@@ -18,5 +21,17 @@ inline Eigen::ArrayXXd lowest_within(const Eigen::ArrayXXd& z, Eigen::Index cell
 inline Eigen::ArrayXXd without_nan(const Eigen::ArrayXXd& z, double value) {
   return z.isNaN().select(value, z);
 }
+
+/// Sums over windows: a summed-area table (Crow 1984).
+class AreaSums {
+ public:
+  explicit AreaSums(const Eigen::ArrayXXd& field);
+
+  /// Over the square around a cell, as far as the field reaches.
+  double around(Cell at, Eigen::Index radius) const;
+
+ private:
+  Eigen::ArrayXXd sums_;  // up to each cell, with a margin of zeros
+};
 
 }  // namespace excavplan

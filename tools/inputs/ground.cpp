@@ -38,6 +38,7 @@ std::optional<GivenGround> given_ground(const GroundInput& input, const Machine&
   given.state = load_ground(*input.file, soil);
   naming_options({{"the cell size is", *input.file + ": the cell size is"}},
                  [&] { require_simulated_cell(given.state.terrain.bank.cell_size); });
+  given.state.terrain.bank.origin -= input.base;
   given.terrain = terrain_to_dig(given.state, soil, density_percent);
   given.density_percent = bank_density_percent(given.state.terrain, soil, strip_of(machine));
   return given;
@@ -66,7 +67,9 @@ void write_ground(const GroundInput& input, const GivenGround* given, const Terr
     state.terrain = before;
   }
   state.soil = soil.name;
-  save_ground(*input.out, after_dig(std::move(state), after));
+  GroundState left = after_dig(std::move(state), after);
+  left.terrain.bank.origin += input.base;
+  save_ground(*input.out, left);
 }
 
 }  // namespace excavplan::tools

@@ -19,6 +19,8 @@ namespace excavplan::tools {
 struct GroundInput {
   std::optional<std::string> file;
   std::optional<std::string> out;
+  /// Of the machine in the frame of the files, with their axes: ground is not resampled [m].
+  Eigen::Vector2d base = Eigen::Vector2d::Zero();
 };
 
 /// What is special about a tool's ground files.
@@ -30,7 +32,7 @@ void declare_ground(Arguments& arguments, GroundInput& input, const GroundUse& u
 
 /// The ground of --ground.
 struct GivenGround {
-  GroundState state;                      ///< as the file tells it
+  GroundState state;                      ///< as the file tells it, in the machine's frame
   Terrain terrain;                        ///< to dig on
   std::optional<double> density_percent;  ///< that it tells of the bank where a machine digs
 };

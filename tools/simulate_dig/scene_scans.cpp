@@ -19,10 +19,12 @@ std::vector<std::string> setup_words() {
 
 /// One camera's place is that of the scan.
 void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points,
-                const std::vector<CameraPlace>& places) {
+                const SceneScanInputs& inputs) {
   if (!file) return;
+  const Eigen::Vector3d base(inputs.base.x(), inputs.base.y(), 0.0);
   Cloud cloud;
-  if (places.size() == 1) cloud.sensor_origin = places.front().position;
+  if (inputs.places.size() == 1) cloud.sensor_origin = inputs.places.front().position + base;
+  for (Eigen::Vector3d& point : points) point += base;
   cloud.points = std::move(points);
   cloud.width = cloud.points.size();
   write_cloud(*file, cloud, cloud_format_of_name(*file));
@@ -66,8 +68,8 @@ void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint
     return inputs.setup == from_above ? scan_scene(scene, inputs.camera, seed, inputs.places)
                                       : scan_scene(scene, sensor_setup_of_word(inputs.setup), seed);
   });
-  write_scan(inputs.before, std::move(scans.before), inputs.places);
-  write_scan(inputs.after, std::move(scans.after), inputs.places);
+  write_scan(inputs.before, std::move(scans.before), inputs);
+  write_scan(inputs.after, std::move(scans.after), inputs);
 }
 
 }  // namespace excavplan::tools

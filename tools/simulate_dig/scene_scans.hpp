@@ -20,8 +20,9 @@ inline constexpr const char* from_above = "above";
 struct SceneScanInputs {
   std::optional<std::string> before, after;
   DepthCamera camera;
-  std::vector<CameraPlace> places;  ///< empty: over dig and heap
-  std::string setup = from_above;   ///< or one of sensor_setups()
+  std::vector<CameraPlace> places;                 ///< empty: over dig and heap
+  Eigen::Vector2d base = Eigen::Vector2d::Zero();  ///< of the machine in their frame [m]
+  std::string setup = from_above;                  ///< or one of sensor_setups()
 
   bool any() const { return before || after; }
 };

@@ -66,6 +66,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_cell(arguments, inputs.cell_size);
   declare_ground(arguments, inputs.ground,
                  {{"terrain", "terrain-frame", "unit", "cell"}, "the dig, with the heap"});
+  arguments.only_if(
+      {[&inputs] { return inputs.ground.file.has_value(); }, "it is of --ground"}, [&] {
+        arguments.option(
+            "base", inputs.ground.base,
+            "where the machine stands in the frame of the ground file, which is that of "
+            "the scans too; its x axis is that of the file");
+      });
   declare_scans(arguments, inputs.files.scans);
   inputs.blocks.declare(arguments);
   arguments.exclude("ground-out", {"blocks"});
@@ -131,7 +138,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
   if (scene.dig.stall)
     outcome.warnings.emplace_back(WarningCode::stalled, describe(*scene.dig.stall));
-  write_files(inputs.files, machine, scene, inputs.seed, outcome);
+  SceneFiles files = inputs.files;
+  files.scans.base = inputs.ground.base;
+  write_files(files, machine, scene, inputs.seed, outcome);
   write_ground(inputs.ground, given ? &*given : nullptr, scene.before, scene.after, soil);
   return outcome;
 }
