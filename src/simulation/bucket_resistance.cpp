@@ -380,11 +380,10 @@ double BucketResistance::pile_on_wedge(Index row, const Place& place, const Stri
   const double over = strip.bank * layers.bank.n.cot_rake + strip.loose * layers.loose.n.cot_rake;
   double cells = ahead / ground_.cell_size();
   double sum = std::min(1.0, cells) * pile_in(row, place);
-  const Eigen::ArrayXXd& lying = ground_.before().loose;
   std::size_t cell = ground_.at(row, place.col);
   for (Index col = place.col - 1; --cells > 0.0 && col >= ground_.cells().col_begin; --col) {
     cell -= ground_.column_step();
-    sum += std::min(1.0, cells) * std::max(0.0, ground_.loose(cell) - lying(row, col));
+    sum += std::min(1.0, cells) * std::max(0.0, ground_.loose(cell) - ground_.lying(row, col));
   }
   return sum * ground_.cell_size() / (ahead + over);
 }
@@ -454,7 +453,7 @@ double BucketResistance::surface_between(double x) const {
 
 BucketResistance::Strip BucketResistance::strip_at(Index row, const Place& place) const {
   const double bank = ground_.before().bank.z(row, place.col) - place.tip.y();
-  const double loose = ground_.before().loose(row, place.col);
+  const double loose = ground_.lying(row, place.col);
   const double pile = pile_in(row, place);
   if (!(bank + loose + pile > 0.0)) return {};
   return {std::max(0.0, bank), std::min(loose, std::max(0.0, bank + loose)),
@@ -463,14 +462,15 @@ BucketResistance::Strip BucketResistance::strip_at(Index row, const Place& place
 
 /// What this dig has laid on a cell that the lip is in or has not reached [m].
 double BucketResistance::pile_in(Index row, const Place& place) const {
-  const double lay = ground_.before().loose(row, place.col);
+  const double lay = ground_.lying(row, place.col);
   const double lies = ground_.loose(row, place.col);
   if (!(lay > 0.0)) return lies;
   const HeightMap& map = ground_.before().bank;
   const double right = map.origin.x() + map.cell_size * static_cast<double>(place.col + 1);
-  const double passed = std::clamp((right - place.lip.x()) / map.cell_size, 0.0, 1.0) *
-                        swath_.cover(row - swath_.first_row());
-  const double left = std::clamp(place.lip.y() - map.z(row, place.col), 0.0, lay);
+  const double length = std::clamp(right - place.lip.x(), 0.0, map.cell_size);
+  const double passed = length / map.cell_size * swath_.cover(row - swath_.first_row());
+  const double line = place.lip.y() + 0.5 * length * place.motion.y() / place.motion.x();
+  const double left = std::clamp(line - map.z(row, place.col), 0.0, lay);
   return std::max(0.0, lies - lay + passed * (lay - left));
 }
 

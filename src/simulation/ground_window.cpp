@@ -59,6 +59,7 @@ void GroundWindow::cover(const CellBlock& cells) {
       const std::size_t i = at(row, col);
       bank_[i] = held ? old.bank(row, col) : whole_.bank.z(row, col);
       loose_[i] = held ? old.loose(row, col) : whole_.loose(row, col);
+      lay_ = lay_ || loose_[i] > 0.0;
       height_[i] = bank_[i] + loose_[i];
       if (held) {
         awake_[i] = old.awake_[old.at(row, col)];

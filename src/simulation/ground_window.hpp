@@ -64,11 +64,11 @@ class GroundWindow {
   /// Of the bank [-].
   double bank_void_ratio(Eigen::Index row, Eigen::Index col) const;
   bool bank_is_even() const { return whole_.bank_void_ratio.size() == 0; }
-  /// State of a cell's bank.
   SoilState bank_state(Eigen::Index row, Eigen::Index col) const;
   /// Whether all loose soil is in the state of soil just dug.
   bool loose_is_even() const { return whole_.loose_void_ratio.size() == 0; }
-  /// State of the loose soil that lay on a cell before.
+  /// Loose soil that lay on a cell of the window before: thickness [m] and state.
+  double lying(Eigen::Index r, Eigen::Index c) const { return lay_ ? whole_.loose(r, c) : 0.0; }
   SoilState lying_state(Eigen::Index row, Eigen::Index col) const;
 
   /// Loose thickness of a thickness of the bank, or of the loose layer, once it has moved [m].
@@ -85,8 +85,7 @@ class GroundWindow {
     loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
     changed(cell);
   }
-  /// Presses on the loose layer of a cell [Pa]; it keeps its solids. Without void ratios a terrain
-  /// does not remember it.
+  /// Presses on the loose layer of a cell [Pa]; without void ratios a terrain does not remember it.
   void compact(std::size_t cell, double pressure);
   /// Adds soil that has moved.
   void raise_loose(std::size_t cell, double thickness) {
@@ -133,6 +132,7 @@ class GroundWindow {
   static constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
 
   const Terrain& whole_;
+  bool lay_ = false;  ///< any loose soil, in the window
   GroundSoil soil_;
   CellBlock cells_;
   Eigen::Index stride_ = 0;

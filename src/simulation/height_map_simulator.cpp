@@ -171,6 +171,8 @@ class Dig {
     const double share = (x1 - x0) / map.cell_size;
     const double ahead =
         (x1 - left) / map.cell_size;  // share of the cell the lip has not passed yet
+    const double behind =             // the line's level in the middle of what it has passed
+        z1 + 0.5 * (left + map.cell_size - x1) * (z1 - z0) / (x1 - x0);
     const double area = map.cell_size * map.cell_size;
     for (Index i = 0; i < swath_.rows(); ++i) {
       const Index row = swath_.first_row() + i;
@@ -184,7 +186,7 @@ class Dig {
       const double cover = share * swath_.cover(i);
       const double bank = cover * mean_above(top, z0, z1);
       // Where the lip has passed, loose soil lies only under its line; the rest is ahead.
-      const double passed = std::clamp(z1 - top, 0.0, ground_.loose(row, col));
+      const double passed = std::clamp(behind - top, 0.0, ground_.loose(row, col));
       const double thickness = (ground_.loose(row, col) - (1.0 - ahead) * passed) / ahead;
       const double loose =
           std::min(ground_.loose(row, col),
