@@ -31,6 +31,15 @@ void declare_ground(Arguments& arguments, GroundInput& input, const GroundUse& u
   arguments.require_ending({".tif", ".tiff"});
 }
 
+void declare_base(Arguments& arguments, GroundInput& input) {
+  const Arguments::Use used = {[&input] { return input.file.has_value(); }, "it is of --ground"};
+  arguments.only_if(used, [&] {
+    arguments.option("base", input.base,
+                     "where the machine stands in the frame of the ground file, which is that of "
+                     "the scans too; its x axis is that of the file");
+  });
+}
+
 std::optional<GivenGround> given_ground(const GroundInput& input, const Machine& machine,
                                         const SoilKind& soil, double density_percent) {
   if (!input.file) return std::nullopt;

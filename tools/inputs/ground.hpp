@@ -29,6 +29,8 @@ struct GroundUse {
   std::string after;                  ///< what the file of --ground-out is after: "the dig"
 };
 void declare_ground(Arguments& arguments, GroundInput& input, const GroundUse& use);
+/// The option --base, of tools that dig in the frame of the machine.
+void declare_base(Arguments& arguments, GroundInput& input);
 
 /// The ground of --ground.
 struct GivenGround {

@@ -66,13 +66,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_cell(arguments, inputs.cell_size);
   declare_ground(arguments, inputs.ground,
                  {{"terrain", "terrain-frame", "unit", "cell"}, "the dig, with the heap"});
-  arguments.only_if(
-      {[&inputs] { return inputs.ground.file.has_value(); }, "it is of --ground"}, [&] {
-        arguments.option(
-            "base", inputs.ground.base,
-            "where the machine stands in the frame of the ground file, which is that of "
-            "the scans too; its x axis is that of the file");
-      });
+  declare_base(arguments, inputs.ground);
   declare_scans(arguments, inputs.files.scans);
   inputs.blocks.declare(arguments);
   arguments.exclude("ground-out", {"blocks"});
