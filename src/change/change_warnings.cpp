@@ -342,6 +342,12 @@ void warn_of_slide(const Area& area, VolumeChange& change) {
       true);
 }
 
+/// Of what rose less what fell.
+double error_of_rise(const VolumeChange& change) {
+  return std::sqrt(std::max(0.0, std::pow(change.before.sd, 2) + std::pow(change.after.sd, 2) -
+                                     2.0 * change.covariance_before_after));
+}
+
 }  // namespace
 
 void warn_of_balance(VolumeChange& change) {
@@ -364,11 +370,8 @@ void warn_of_balance(VolumeChange& change) {
             "area by `dump_before` and `dump_after`");
     return;
   }
-  const double error =
-      std::sqrt(std::max(0.0, std::pow(change.before.sd, 2) + std::pow(change.after.sd, 2) -
-                                  2.0 * change.covariance_before_after));
   const double ratio = after / before;
-  const bool shrank = ratio < least_bulking && before - after > 2.0 * error;
+  const bool shrank = ratio < least_bulking && before - after > 2.0 * error_of_rise(change);
   if (shrank || ratio > largest_bulking) {
     change.warnings.emplace_back(
         WarningCode::looks_swapped,
@@ -380,6 +383,23 @@ void warn_of_balance(VolumeChange& change) {
             "is no soil, a vehicle, by `dig_area` and `dump_area`; or, if z "
             "points down, give frames with z up");
   }
+}
+
+void warn_of_missing_soil(VolumeChange& change) {
+  const double missing = change.before.value - change.after.value;
+  const bool is_said = std::any_of(
+      change.warnings.begin(), change.warnings.end(),
+      [](const Warning& warning) { return warning.code == WarningCode::no_dumped_soil; });
+  if (is_said || !(missing > (1.0 - least_bulking) * change.before.value) ||
+      !(missing > 2.0 * error_of_rise(change))) {
+    return;
+  }
+  change.warnings.emplace_back(
+      WarningCode::no_dumped_soil,
+      "of " + litres_as_m3(change.before.value) + " of bank that were cut " +
+          litres_as_m3(missing) +
+          " did not rise anywhere: soil went out of sight, so the bulking factor is unknown; give "
+          "scans that show it, or its mass");
 }
 
 void warn_of_zones(const std::vector<Area>& areas, const ChangeOptions& options,

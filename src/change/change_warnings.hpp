@@ -21,6 +21,9 @@ namespace excavplan {
 /// looks_swapped.
 void warn_of_balance(VolumeChange& change);
 
+/// Where less rose on the whole than the bank that was cut in known ground: no_dumped_soil.
+void warn_of_missing_soil(VolumeChange& change);
+
 /// Of changes that are neither hole, spill nor heap, and of zones that are cut off or were not
 /// seen: other_change, zone_at_border, zone_unseen, zone_partly_unseen.
 ///

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "change/earlier_soil.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
+#include <excavplan/base/error.hpp>
 #include <excavplan/change/bulking.hpp>
 
 #include "base/text.hpp"
@@ -91,6 +93,82 @@ void state(double volume, double factor, double scans, VolumeChange& change) {
       std::abs(read - factor) > telling * factor);
 }
 
+// ---- In ground that is known -------------------------------------------------------------------
+
+constexpr double sure = 2.0;          // ours: deviations that make a change one
+constexpr double swelling_sd = 0.01;  // ours: of loose soil that is dug again, of its volume
+constexpr double whole = 1.0 - 1e-9;  // of a cell
+
+double value_at(const Eigen::ArrayXXd& layer, Cell at, double without) {
+  if (layer.size() == 0) return without;
+  const double value = layer(at.row, at.col);
+  return std::isnan(value) ? without : value;
+}
+
+/// What a fall took of the loose soil of a cell. A fall within its error is no less loose soil for
+/// its sign.
+double taken_of(double loose, double fall, double sd) {
+  if (fall < sure * sd) return std::min(fall, loose);
+  return std::min(std::max(fall, 0.0), loose);
+}
+
+/// One cell of a dig, as heights [m].
+struct CellCut {
+  double loose = 0.0;    ///< that was dug again
+  double bank = 0.0;     ///< cut
+  double fallen = 0.0;   ///< loose soil above the cut; NaN where the surface after is not known
+  double swept = 0.0;    ///< share of the cell where the bucket cut bank
+  bool reached = false;  ///< the bank: the error of `loose` is that of the whole layer
+};
+
+class CutReader {
+ public:
+  CutReader(const KnownGround& known, const Area& area) : known_(known), area_(area) {}
+
+  CellCut at(Cell cell) const {
+    const double fall = -area_.ground.difference(cell.row, cell.col);
+    const double loose = value_at(known_.loose, cell, 0.0);
+    CellCut cut = under_bucket(cell, fall, loose);
+    const bool in_hole = is_in_hole(cell);
+    if (cut.swept >= whole || std::isnan(fall) || !(in_hole || cut.swept > 0.0)) return cut;
+    const double sd = std::sqrt(area_.variance(cell.row, cell.col));
+    if (in_hole && loose > 0.0) cut.loose = taken_of(loose, fall, sd);
+    const double bank = fall - cut.loose;
+    if (cut.swept > 0.0) {  // a cell at the edge of the bucket
+      cut.fallen = std::max(0.0, cut.bank - bank);
+      if (in_hole) cut.bank = std::max(cut.bank, bank);
+    } else {
+      cut.bank = bank;
+    }
+    cut.reached = cut.loose == loose;
+    return cut;
+  }
+
+  bool is_in_hole(Cell at) const {
+    const int zone = area_.ground.zone(at.row, at.col);
+    return zone >= 0 && area_.kinds[static_cast<std::size_t>(zone)] == ZoneKind::dig;
+  }
+
+ private:
+  CellCut under_bucket(Cell cell, double fall, double loose) const {
+    CellCut cut;
+    const double cover = value_at(known_.cover, cell, 0.0);
+    const double bank = value_at(known_.cut, cell, 0.0);
+    if (!(cover > 0.0 && bank > 0.0)) return cut;
+    cut.swept = cover;
+    cut.bank = bank;
+    cut.fallen = std::isnan(fall) ? fall : 0.0;
+    if (cover < whole) return cut;
+    cut.loose = loose;
+    cut.reached = true;
+    cut.fallen = loose + bank - fall;
+    return cut;
+  }
+
+  const KnownGround& known_;
+  const Area& area_;
+};
+
 }  // namespace
 
 void state_earlier_soil(const std::vector<const HeightMap*>& before, const std::vector<Area>& areas,
@@ -102,6 +180,77 @@ void state_earlier_soil(const std::vector<const HeightMap*>& before, const std::
   const double hole = change.before.value;
   if (volume < least_share * hole || volume > 0.5 * std::min(hole, change.after.value)) return;
   state(volume, k->value, bulking_errors(change).scans, change);
+}
+
+void require_known_ground(const KnownGround& known, const HeightMap& before) {
+  for (const Eigen::ArrayXXd* layer :
+       {&known.loose, &known.loose_sd, &known.swelling, &known.cut, &known.cover}) {
+    const bool fits = layer->size() == 0 ||
+                      (layer->rows() == before.z.rows() && layer->cols() == before.z.cols());
+    if (!fits) {
+      throw Error(ErrorKind::bad_input,
+                  "known ground: a layer of " + std::to_string(layer->rows()) + " x " +
+                      std::to_string(layer->cols()) + " cells, must be as large as the surfaces, " +
+                      std::to_string(before.z.rows()) + " x " + std::to_string(before.z.cols()));
+    }
+  }
+}
+
+Eigen::ArrayXXi dug_before(const KnownGround& known) {
+  constexpr double least = 0.01;     // ours [m]
+  constexpr Eigen::Index reach = 2;  // ours: floors are not covered everywhere
+  Eigen::ArrayXXi dug = Eigen::ArrayXXi::Zero(known.loose.rows(), known.loose.cols());
+  for_each_cell(known.loose, [&](Cell at) {
+    if (!(known.loose(at.row, at.col) > least)) return;
+    for_each_around(known.loose, at, reach, [&](Cell n) { dug(n.row, n.col) = 1; });
+  });
+  return dug;
+}
+
+void find_loose_soil(const KnownGround& known, Area& area) {
+  area.is_cut_told = known.cut.size() > 0;
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int zone = area.ground.zone(at.row, at.col);
+    const double loose = value_at(known.loose, at, 0.0);
+    if (zone < 0 || !(loose > 0.0)) return;
+    ZoneSum& sum = area.zones[static_cast<std::size_t>(zone)];
+    const double fall = -area.ground.difference(at.row, at.col);
+    if (!(sum.volume < 0.0) || std::isnan(fall)) return;
+    sum.loose += cell_area * taken_of(loose, fall, std::sqrt(area.variance(at.row, at.col)));
+  });
+}
+
+void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& change) {
+  const CutReader reader(known, area);
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  KnownCut cut;
+  double beyond = 0.0;    // bank cut beyond what the hole's own sum holds
+  double swelling = 0.0;  // of loose soil
+  double variance = 0.0;
+  double reached = 0.0;
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const CellCut one = reader.at(at);
+    if (one.swept > 0.0 && std::isnan(one.fallen)) cut.unseen_area += cell_area;
+    cut.swept_area += cell_area * one.swept;
+    if (std::isnan(one.fallen)) return;
+    cut.loose.value += cell_area * one.loose;
+    cut.fallen += cell_area * one.fallen;
+    swelling += cell_area * one.loose * value_at(known.swelling, at, 0.0);
+    const double fall = reader.is_in_hole(at) ? -area.ground.difference(at.row, at.col) : 0.0;
+    if (one.bank != 0.0 || one.loose != 0.0) beyond += cell_area * (one.bank - fall);
+    if (!one.reached || !(one.loose > 0.0)) return;
+    reached += cell_area;
+    variance += std::pow(cell_area * value_at(known.loose_sd, at, 0.0), 2);
+  });
+  cut.loose.sd = std::sqrt(variance + std::pow(reached * known.common_sd, 2));
+  change.before.value += beyond;
+  change.after.value += beyond - swelling;
+  const double swollen = swelling_sd * std::max(0.0, cut.loose.value);
+  change.errors.loose(2, 2) += swollen * swollen;
+  const Eigen::Vector3d both(cut.loose.sd, 0.0, cut.loose.sd);
+  change.errors.loose += both * both.transpose();
+  change.cut = cut;
 }
 
 }  // namespace excavplan

@@ -17,7 +17,6 @@
 #include "change/attribution.hpp"
 #include "change/change_warnings.hpp"
 #include "change/earlier_soil.hpp"
-#include "change/loose_soil.hpp"
 #include "change/open_changes.hpp"
 #include "change/strewn_soil.hpp"
 #include "change/surveyed_area.hpp"
@@ -201,6 +200,7 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   if (known != nullptr) {
     take_loose_soil(*known, areas.front(), change);
     set_deviations(change);
+    warn_of_missing_soil(change);
   }
   state_open_changes(areas, attribution, change);
   if (known == nullptr) state_earlier_soil(before, areas, change);

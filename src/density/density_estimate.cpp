@@ -437,6 +437,19 @@ void require_volumes(const DensityOptions& options, std::initializer_list<Volume
           "excavplan::paper, which is built where PCL is found (libpcl-dev)");
 }
 
+/// What known ground adds to an estimate: a density by solids, its doubts, and the ground after.
+void finish_in_ground(const DensityOptions& options, const SurfacePair& surfaces,
+                      const SurfaceVolumes& volumes, const LawsForDig& laws,
+                      DensityEstimate& estimate) {
+  if (!estimate.bulking) set_density_by_solids(estimate, laws, options);
+  judge_bank(estimate);
+  estimate.shared_with_before = shared_share(volumes.change);
+  const double density = estimate.density ? estimate.density->percent : 50.0;
+  const double fallback = expected_fallback(laws.law, density);
+  estimate.ground_after =
+      ground_after(options, {surfaces, volumes.change, *volumes.known, fallback});
+}
+
 /// The method, in the order of the paper, for each way to find the volumes.
 std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& law,
                                        const DensityOptions& options,
@@ -464,9 +477,6 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   if (options.registered) keep_registration(surfaces, known);
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
-  if (options.ground) {
-    known.shared_with_before = shared_share(surface);
-  }
 
   std::vector<DensityEstimate> results;
   for (const VolumeMethod method : methods) {
@@ -480,14 +490,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);
-    if (!estimate.bulking) set_density_by_solids(estimate, laws, options);
-    if (options.ground) {
-      judge_bank(estimate);
-      const double expected =
-          expected_fallback(laws.law, estimate.density ? estimate.density->percent : 50.0);
-      estimate.ground_after =
-          ground_after(options, {surfaces.dig.surfaces, surface, *volumes.known, expected});
-    }
+    if (options.ground) finish_in_ground(options, surfaces.dig.surfaces, volumes, laws, estimate);
     judge_scans(estimate);
   }
   return results;

@@ -12,7 +12,7 @@
 
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
-#include "ground/map_sampling.hpp"
+#include "scans/map_sampling.hpp"
 
 namespace excavplan {
 namespace {

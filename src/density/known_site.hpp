@@ -4,12 +4,12 @@
 
 #include <optional>
 
-#include <excavplan/change/ground_update.hpp>
 #include <excavplan/change/known_ground.hpp>
 #include <excavplan/density/density_options.hpp>
 #include <excavplan/density/density_result.hpp>
 #include <excavplan/ground/ground_state.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/scans/ground_update.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
 /// @file

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/change/bulking.hpp>
-#include <excavplan/change/ground_update.hpp>
+#include <excavplan/scans/ground_update.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/terrain.hpp>
 

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/base/data_files.hpp>
-#include <excavplan/change/ground_update.hpp>
+#include <excavplan/scans/ground_update.hpp>
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/soil/density_law.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/change/ground_update.hpp>
+#include <excavplan/scans/ground_update.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "base/check.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
-#include "ground/map_sampling.hpp"
+#include "scans/map_sampling.hpp"
 
 namespace excavplan {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ground/map_sampling.hpp"
+#include "scans/map_sampling.hpp"
 
 #include <algorithm>
 #include <cmath>
