@@ -30,9 +30,10 @@ PlanGround ground_of_site(const PlanGroundInputs& inputs, const Machine& machine
         "--density, --density-sd and --density-from exclude --site, which has digs that "
         "tell the density");
   }
-  const bool is_told = told.percent || told.file;
-  PlanGround ground = {{},  is_told ? density_of(told) : site->density_in_reach(), told, {}, {}, {},
-                       true};
+  PlanGround ground;
+  ground.density_from = told;
+  ground.density = told.percent || told.file ? density_of(told) : site->density_in_reach();
+  ground.is_known = true;
   ground.site = site;
   GroundState known;
   known.terrain =
@@ -74,7 +75,9 @@ bool PlanGround::takes_density_under(const DigPlan& plan) {
 PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& inputs,
                        const Machine& machine, const SoilKind& soil) {
   if (inputs.site.folder) return ground_of_site(inputs, machine, soil);
-  PlanGround ground = {{}, density_of(inputs.density), inputs.density, {}, {}, {}, false};
+  PlanGround ground;
+  ground.density = density_of(inputs.density);
+  ground.density_from = inputs.density;
   ground.given = given_ground(inputs.state, machine, soil, ground.density.percent);
   ground.is_known = ground.given || inputs.terrain.cloud;
   if (ground.given) {

@@ -33,7 +33,7 @@ void declare_plan_ground(Arguments& arguments, PlanGroundInputs& inputs);
 
 struct PlanGround {
   Terrain terrain;                   ///< to dig on
-  GroundDensity density;             ///< of its bank; that of --ground where its file tells it
+  GroundDensity density{0.0};        ///< of its bank; that of --ground where its file tells it
   DensityInput density_from;         ///< where that is from
   std::optional<GivenGround> given;  ///< by --ground
   std::shared_ptr<const SiteToPlanOn> site = {};  ///< by --site; else null
