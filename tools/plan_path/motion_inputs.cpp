@@ -255,7 +255,7 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
   outcome.json["ground"] = on;
   if (planned.plan.dig) outcome.lines.push_back(std::string("ground       ") + on);
   add(planned.ground.warnings, outcome);
-  if (planned.ground.is_scanned) {
+  if (planned.ground.ground.obstacles.size() > 0) {
     const auto at_dump = naming_options(option_names, [&] {
       return check_dump_place(planned.machine, planned.ground.ground, planned.plan,
                               planned.objective);
