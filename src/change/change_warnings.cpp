@@ -370,8 +370,9 @@ void warn_of_balance(VolumeChange& change) {
             "area by `dump_before` and `dump_after`");
     return;
   }
+  const double error = error_of_rise(change);
   const double ratio = after / before;
-  const bool shrank = ratio < least_bulking && before - after > 2.0 * error_of_rise(change);
+  const bool shrank = ratio < least_bulking && before - after > 2.0 * error;
   if (shrank || ratio > largest_bulking) {
     change.warnings.emplace_back(
         WarningCode::looks_swapped,

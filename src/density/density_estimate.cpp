@@ -408,6 +408,12 @@ void check(const DensityLaw& law, const DensityOptions& options) {
   const double cell = options.cell_size.value_or(1.0);
   require(cell > 0.0 && std::isfinite(cell), "cell_size", cell, "above 0 m and finite");
   if (options.dug_path) require_machine(options.dug_path->machine);
+  if (options.dug_path && options.dug_path->start_z) {
+    require(std::isfinite(*options.dug_path->start_z), "start_z", *options.dug_path->start_z,
+            "finite");
+  }
+  if (options.ground) require_ground_state(*options.ground, "ground");
+  require(std::isfinite(options.scan_time), "scan_time", options.scan_time, "finite");
   if (options.soil.kind) require_soil(*options.soil.kind);
   for (const SoilLaw& possible : options.soil.possible) {
     require_soil(possible.soil);

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/change/bulking.hpp>
-#include <excavplan/scans/ground_update.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/terrain.hpp>
+#include <excavplan/scans/ground_update.hpp>
 
 #include "base/random.hpp"
 #include "support/errors.hpp"

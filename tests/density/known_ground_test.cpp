@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/base/data_files.hpp>
-#include <excavplan/scans/ground_update.hpp>
 #include <excavplan/density/density_estimate.hpp>
+#include <excavplan/scans/ground_update.hpp>
 #include <excavplan/soil/density_law.hpp>
 
 #include "support/dig_series.hpp"

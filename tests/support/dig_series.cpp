@@ -20,7 +20,7 @@ namespace {
 constexpr double deepest = 1.0;  // of a hole [m]
 constexpr Rectangle site_extent = {-4.0, -20.0, 13.0, 9.0};
 
-double waves(double x, double y, double roughness, std::uint64_t seed) {
+double waves(const Eigen::Vector2d& at, double roughness, std::uint64_t seed) {
   Random random(seed, 9);
   constexpr int count = 8;
   double z = 0.0;
@@ -28,7 +28,8 @@ double waves(double x, double y, double roughness, std::uint64_t seed) {
     const double length = 0.3 * std::pow(8.0, i / (count - 1.0));
     const double heading = random.uniform(0.0, 2.0 * pi);
     const double phase = random.uniform(0.0, 2.0 * pi);
-    z += std::sin(2.0 * pi / length * (x * std::cos(heading) + y * std::sin(heading)) + phase);
+    z += std::sin(2.0 * pi / length * (at.x() * std::cos(heading) + at.y() * std::sin(heading)) +
+                  phase);
   }
   return roughness * z / std::sqrt(0.5 * count);
 }
@@ -58,7 +59,7 @@ DigSeries::DigSeries(const SeriesSettings& settings)
   for (Eigen::Index row = 0; row < surface.z.rows(); ++row) {
     for (Eigen::Index col = 0; col < surface.z.cols(); ++col) {
       surface.z(row, col) =
-          waves(surface.x(col), surface.y(row), settings.roughness, settings.seed);
+          waves({surface.x(col), surface.y(row)}, settings.roughness, settings.seed);
     }
   }
   site_ = undisturbed(surface);
