@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ground/grid_cells.hpp"
-#include "ground/map_sampling.hpp"
+#include "scans/map_sampling.hpp"
 
 namespace excavplan {
 namespace {
