@@ -315,7 +315,9 @@ void McapRecording::require_once_each(RecordedChunk& chunk, const ByteReader& re
 
 void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
                          std::vector<MessagePlace>& places) const {
-  for (const auto& [number, offset] : chunks_[chunk].channels) {
+  for (const auto& index_of_channel : chunks_[chunk].channels) {
+    const auto number = index_of_channel.first;
+    const auto offset = index_of_channel.second;
     if (!wanted[number]) continue;
     const std::uint64_t end = chunks_[chunk].offset + chunks_[chunk].length;
     const std::uint64_t length =
