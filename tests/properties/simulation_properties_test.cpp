@@ -9,10 +9,10 @@
 
 #include <Eigen/LU>
 
-#include "soil/earthmoving.hpp"
 #include "simulation/section_bucket.hpp"
 #include "simulation/slump.hpp"
 #include "simulation/swath.hpp"
+#include "soil/earthmoving.hpp"
 #include "support/cases.hpp"
 
 namespace excavplan::test {
