@@ -79,6 +79,22 @@ struct BucketResistance::SlidingFace {
   bool packed = false;
 };
 
+/// Terms of the wedge's force that do not depend on the depth of the strip.
+struct BucketResistance::FaceTerms {
+  FaceTerms(const SoilState& state, const EarthmovingFactors& factors, bool packed)
+      : soil(state),
+        n(factors),
+        adhesion(packed ? state.cohesion : state.adhesion),
+        friction(packed ? state.friction_angle : state.tool_friction_angle),
+        shear_at_rest(at_rest(state) * std::tan(state.friction_angle)) {}
+
+  SoilState soil;
+  EarthmovingFactors n;
+  double adhesion;
+  double friction;       ///< on the face [rad]
+  double shear_at_rest;  ///< friction on a vertical plane per vertical stress, at rest [-]
+};
+
 /// In the frame of the motion [N].
 struct BucketResistance::FaceForce {
   /// Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
@@ -92,7 +108,10 @@ struct BucketResistance::FaceForce {
   double loose_depth = 0.0;  ///< likewise
   double length = 0.0;       ///< of the wedge's top ahead of the lip [m]
 
-  void push(double passive, double adhesion, const FaceTerms& t);
+  void push(double passive, double adhesion, const FaceTerms& t) {
+    along += fade * (passive * t.n.sin_face + adhesion * t.n.cot_rake);
+    across += fade * (passive * t.n.cos_face - adhesion);
+  }
 };
 
 /// Ground above the tip in one row, and what this dig has pushed up on it [m].
@@ -201,31 +220,10 @@ Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) co
   return r;
 }
 
-/// Terms of the wedge's force that do not depend on the depth of the strip.
-struct BucketResistance::FaceTerms {
-  FaceTerms(const SoilState& state, const EarthmovingFactors& factors, bool packed)
-      : soil(state),
-        n(factors),
-        adhesion(packed ? state.cohesion : state.adhesion),
-        friction(packed ? state.friction_angle : state.tool_friction_angle),
-        shear_at_rest(at_rest(state) * std::tan(state.friction_angle)) {}
-
-  SoilState soil;
-  EarthmovingFactors n;
-  double adhesion;
-  double friction;       ///< on the face [rad]
-  double shear_at_rest;  ///< friction on a vertical plane per vertical stress, at rest [-]
-};
-
 struct BucketResistance::Layers {
   FaceTerms bank;
   FaceTerms loose;
 };
-
-void BucketResistance::FaceForce::push(double passive, double adhesion, const FaceTerms& t) {
-  along += fade * (passive * t.n.sin_face + adhesion * t.n.cot_rake);
-  across += fade * (passive * t.n.cos_face - adhesion);
-}
 
 BucketResistance::FaceTerms BucketResistance::terms_of(const SoilState& soil,
                                                        const SlidingFace& face,
@@ -379,7 +377,7 @@ double BucketResistance::pile_on_wedge(Index row, const Place& place, const Stri
       strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
   const double over = strip.bank * layers.bank.n.cot_rake + strip.loose * layers.loose.n.cot_rake;
   double cells = ahead / ground_.cell_size();
-  double sum = std::min(1.0, cells) * pile_in(row, place);
+  double sum = std::min(1.0, cells) * strip.pile;
   std::size_t cell = ground_.at(row, place.col);
   for (Index col = place.col - 1; --cells > 0.0 && col >= ground_.cells().col_begin; --col) {
     cell -= ground_.column_step();

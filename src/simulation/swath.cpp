@@ -46,6 +46,7 @@ Swath::Swath(const HeightMap& map, double width, double least_cover) : map_(map)
     const auto row = static_cast<double>(first_row_ + i);
     cover_(i) = std::min(last, row + 1.0) - std::max(first, row);
   }
+  covered_ = cover_.sum();
 }
 
 Index Swath::column(double x) const {

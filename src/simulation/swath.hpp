@@ -40,13 +40,14 @@ class Swath {
   double mean(OfRow&& of_row) const {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < cover_.size(); ++i) sum += cover_(i) * of_row(first_row_ + i);
-    return sum / cover_.sum();
+    return sum / covered_;
   }
 
  private:
   const HeightMap& map_;
   Eigen::Index first_row_ = 0;
   Eigen::ArrayXd cover_;
+  double covered_ = 0.0;  ///< sum of them
 };
 
 }  // namespace excavplan

@@ -214,8 +214,8 @@ TEST_F(PlanDig, LooksUpTheSlopeWhereItDigsOnGroundThatBends) {
     double degrees;
     double density;
   };
-  for (const Bend& bend : {Bend{4.0, 12.0, 70.0}, Bend{4.0, 20.0, 80.0}, Bend{4.5, 14.0, 80.0},
-                           Bend{5.0, 20.0, 80.0}}) {
+  for (const Bend& bend : {Bend{4.0, 14.0, 70.0}, Bend{4.0, 20.0, 80.0}, Bend{4.5, 14.0, 60.0},
+                           Bend{5.0, 20.0, 60.0}}) {
     SCOPED_TRACE(std::to_string(bend.x) + " m, " + std::to_string(bend.degrees));
     Terrain ground = level_planning_ground(machine_);
     const double rise = std::tan(bend.degrees * std::acos(-1.0) / 180.0);
