@@ -60,6 +60,16 @@ TEST_F(Tools, ACountIsOfTheUnitThatIsSaid) {
   }
 }
 
+/// A bare number is in metres.
+TEST_F(BadInput, CountsOfCentimetresAreRefused) {
+  const Words words = depth_run(folder);
+  for (const char* const metres : {"0.25", "0.125", "0.25m", "0.011"}) {
+    refused(2, "as in 0.25mm", "depth-to-cloud", words + Words{"--depth-unit", metres});
+  }
+  refused(2, "--depth-unit must be above 0 m", "depth-to-cloud",
+          words + Words{"--depth-unit", "0"});
+}
+
 TEST_F(BadInput, DepthImagesAreRefusedWithTheReason) {
   const Words words = depth_run(folder);
   refused(3, "not a PNG image", "depth-to-cloud",

@@ -161,6 +161,7 @@ TEST_F(Recordings, WhatIsNotThereIsSaidWithWhatIs) {
           {shipped("quickstart/before.pcd"), "--tf-frame", "map"});
   refused(2, "--depth-unit needs a recording", tool,
           {shipped("quickstart/before.pcd"), "--depth-unit", "0.25mm"});
+  refused(2, "as in 0.25mm", tool, {recording("scene.db3"), "--depth-unit", "0.25"});
   refused(2, "holds points in metres", tool,
           {recording("scene.db3") + ":/lidar/points", "--depth-unit", "0.25mm"});
   refused(3, "/camera/depth/image_raw", "estimate-density",

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "frame/tool.hpp"
 #include "inputs/found_pose.hpp"
+#include "inputs/unit_inputs.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -51,8 +52,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("average", "FILES", inputs.average,
                  "more frames of the same view, averaged with IMAGE pixel by pixel: files "
                  "separated by commas, or a folder, for all its .png files");
-  arguments.option("depth-unit", inputs.depth_unit, Quantity::length,
-                   "of a count: 0.25mm, 0.125mm (default: as the intrinsics say, else 1mm)");
+  declare_depth_unit(arguments, inputs.depth_unit,
+                     "of a count: 0.25mm, 0.125mm (default: as the intrinsics say, else 1mm)");
   declare_pose(arguments, inputs.pose, "u_px,v_px (or scan_x_m,scan_y_m,scan_z_m)");
   arguments.output("out", inputs.out, "cloud to write: " + cloud_endings());
   arguments.require("out");
@@ -83,9 +84,6 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
 Outcome convert(const Inputs& inputs) {
   check_pose(inputs.pose);
   const CloudFormat format = cloud_format_of_name(inputs.out);
-  if (inputs.depth_unit && !(*inputs.depth_unit > 0.0)) {
-    usage_error("--depth-unit must be above 0 m");
-  }
   DepthIntrinsics intrinsics = load_intrinsics(inputs.intrinsics);
   if (inputs.depth_unit) intrinsics.depth_unit = *inputs.depth_unit;
   const std::vector<std::string> frames = frames_of(inputs);

@@ -11,6 +11,7 @@
 
 #include "base/text.hpp"
 #include "frame/option_names.hpp"
+#include "inputs/unit_inputs.hpp"
 #include "recording/recording_file.hpp"
 #include "results/scan_results.hpp"
 
@@ -34,8 +35,9 @@ std::string line_of(const RecordedScan& scan) {
 void declare_recorded(Arguments& arguments, RecordedOptions& options) {
   arguments.text("tf-frame", "NAME", options.tf_frame,
                  "frame of the transforms of a recording into which its scans are put");
-  arguments.option("depth-unit", options.depth_unit, Quantity::length,
-                   "of a count in the depth images of a recording: 0.25mm, 0.125mm (default: 1mm)");
+  declare_depth_unit(
+      arguments, options.depth_unit,
+      "of a count in the depth images of a recording: 0.25mm, 0.125mm (default: 1mm)");
 }
 
 std::optional<RecordedInput> recorded_input(const std::string& text,
