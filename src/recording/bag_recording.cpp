@@ -130,6 +130,7 @@ class BagRecording : public ChunkedContainer {
   void bound_chunks(std::uint64_t end);
   void scan();
   std::uint64_t scan_record(std::uint64_t offset);
+  std::int64_t last_scanned() const;
   void scan_chunk(std::uint64_t offset, std::uint64_t length);
   Bytes header_at(std::uint64_t offset) const;
   ChunkHead head_of(const RecordedChunk& chunk) const;
@@ -200,8 +201,7 @@ void BagRecording::scan() {
       throw;
     } catch (const Error& error) {
       offset = next_chunk(offset + 1, file_.size());
-      const std::int64_t last = chunks_.empty() ? earliest : chunks_.back().end;
-      if (!is_cut_off_ || offset < file_.size()) skipped_.add(error.what(), {last, latest});
+      if (!is_cut_off_ || offset < file_.size()) skipped_.add_open(error.what(), last_scanned());
     }
   }
 }
@@ -228,16 +228,22 @@ std::uint64_t BagRecording::scan_record(std::uint64_t offset) {
   return end;
 }
 
+/// Of the messages that scan() found so far.
+std::int64_t BagRecording::last_scanned() const {
+  return chunks_.empty() ? earliest : chunks_.back().end;
+}
+
 void BagRecording::scan_chunk(std::uint64_t offset, std::uint64_t length) {
   RecordedChunk chunk;
   chunk.offset = offset;
   chunk.length = length;
-  chunk.start = chunks_.empty() ? earliest : chunks_.back().end;
+  chunk.start = last_scanned();
   chunk.end = latest;
   Bytes content;
-  if (!skipped_.guard(chunk.times(), [&] { content = load(chunk); })) return;
+  if (!skipped_.guard_open(chunk.start, [&] { content = load(chunk); })) return;
   scan_content(chunk, content.view(), chunk.places);
   keep_chunk(std::move(chunk));
+  if (last_scanned() > earliest) skipped_.close(last_scanned());
 }
 
 void BagRecording::scan_content(const RecordedChunk& chunk, std::string_view content,
@@ -248,11 +254,13 @@ void BagRecording::scan_content(const RecordedChunk& chunk, std::string_view con
       const Fields fields(all.part("header of a record"));
       const std::uint64_t op = fields.number("op", 1);
       const ByteReader inside = all.part("record");
-      skipped_.guard(no_time, [&] {
+      Loss loss{op == Op::message ? chunk.times() : no_time};
+      skipped_.guard(loss, [&] {
         if (op == Op::connection) take_connection(fields, inside, all);
         if (op != Op::message) return;
         const std::uint32_t id = fields.u32("conn");
         const std::uint32_t channel = channel_of(id);
+        if (channel < channels_.size()) loss.topics = {channels_[channel].topic};
         if (channel == channels_.size()) {
           fields.fail("a message of connection " + std::to_string(id), "one that comes before");
         }

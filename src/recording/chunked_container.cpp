@@ -98,7 +98,7 @@ std::vector<MessagePlace> ChunkedContainer::listed_places(std::uint32_t chunk,
     throw;
   } catch (const Error& error) {
     listed.lost = error.what();
-    skipped_.add(listed.lost, listed.times());
+    skipped_.add(listed.lost, loss_of(listed));
   }
   return listed.places;
 }
@@ -112,7 +112,8 @@ std::vector<MessagePlace> ChunkedContainer::places_of(std::uint32_t chunk,
     const TimeRange& usual = usual_times_[channels_[place.channel].topic_index];
     if (place.time < usual.from || place.time > usual.to) return true;
     if (place.time >= listed.start && place.time <= listed.end) return false;
-    skipped_.guard({place.time, place.time}, [&] {
+    const Loss loss = {{place.time, place.time}, {channels_[place.channel].topic}};
+    skipped_.guard(loss, [&] {
       file_.fail(listed.offset, "a chunk with a message at " + std::to_string(place.time) + " ns",
                  "messages at " + std::to_string(listed.start) + " to " +
                      std::to_string(listed.end) + " ns, as the index of the file says");
@@ -122,6 +123,28 @@ std::vector<MessagePlace> ChunkedContainer::places_of(std::uint32_t chunk,
   places.erase(std::remove_if(places.begin(), places.end(), is_left_out), places.end());
   for (MessagePlace& place : places) place.chunk = chunk;
   return places;
+}
+
+void ChunkedContainer::check() {
+  const std::vector<bool> all(channels_.size(), true);
+  for (std::uint32_t i = 0; i < chunks_.size(); ++i) {
+    RecordedChunk& chunk = chunks_[i];
+    if (chunk.offset == 0) continue;  // messages outside of chunks
+    try {
+      load(chunk);
+      listed_places(i, all);
+    } catch (const Unsupported&) {  // whole, for all that is known
+    } catch (const Error& error) {
+      chunk.lost = error.what();
+      skipped_.add(chunk.lost, loss_of(chunk));
+    }
+  }
+}
+
+Loss ChunkedContainer::loss_of(const RecordedChunk& chunk) const {
+  Loss loss{chunk.times()};
+  for (const auto& [channel, offset] : chunk.channels) loss.topics.insert(channels_[channel].topic);
+  return loss;
 }
 
 std::uint32_t ChunkedContainer::channel_of(std::uint32_t id) const {
@@ -222,7 +245,7 @@ std::string_view ChunkedContainer::chunk_of(const MessagePlace& place) {
       throw;
     } catch (const Error& error) {
       chunk.lost = error.what();
-      skipped_.add(chunk.lost, chunk.times());
+      skipped_.add(chunk.lost, loss_of(chunk));
     }
   }
   throw Error(ErrorKind::bad_file, chunk.lost);

@@ -64,6 +64,7 @@ class ChunkedContainer : public Container {
       : Container(skipped), file_(path) {}
   std::unique_ptr<MessageCursor> messages(const std::vector<std::size_t>& topics, std::int64_t from,
                                           std::int64_t to) override;
+  void check() override;
 
  protected:
   /// Appends the places of a chunk's messages, of wanted channels at least, by the file's index.
@@ -81,6 +82,8 @@ class ChunkedContainer : public Container {
   /// The message at a place, whose record must agree with the index; good until the next call.
   virtual std::string_view message_at(const MessagePlace& place) = 0;
 
+  /// Of a chunk: of its topics, where they are known.
+  Loss loss_of(const RecordedChunk& chunk) const;
   /// The channel with this id. @return channels_.size() if there is none
   std::uint32_t channel_of(std::uint32_t id) const;
   void add_channel(RecordedChannel channel, const ByteReader& reader);

@@ -39,7 +39,7 @@ void date_without_strays(const std::string& file, const std::vector<std::int64_t
                   (strays == 1 ? " message" : " messages") +
                   " over a year from the others, the first at " + std::to_string(first_stray) +
                   " ns, expected them within a year",
-              no_time);
+              {{topic.first, topic.last}, {topic.name}});
 }
 
 }  // namespace excavplan

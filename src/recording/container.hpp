@@ -54,6 +54,7 @@ class Container {
   const std::vector<RecordedTopic>& topics() const { return topics_; }
   /// True if its end is missing, as that of a recorder that was killed.
   virtual bool is_cut_off() const { return false; }
+  virtual void check() {}  ///< notes all chunks that are damaged
   /// The messages of these topics recorded at `from` to `to`, both included. Good as long as the
   /// container.
   virtual std::unique_ptr<MessageCursor> messages(const std::vector<std::size_t>& topics,

@@ -100,9 +100,15 @@ class McapRecording : public ChunkedContainer {
   void read_statistics(ByteReader record);
 
   void scan(std::uint64_t data_start);
+  std::int64_t last_scanned() const;
   void scan_record(std::uint8_t opcode, std::uint64_t offset, std::uint64_t length);
   void scan_chunk(std::uint64_t offset, std::uint64_t length, bool is_endless = false);
-  void scan_message(std::uint64_t offset, ByteReader fields, std::vector<MessagePlace>& places);
+  struct ScannedPlace {
+    std::uint64_t offset;
+    TimeRange times;  // that the message may bear
+  };
+  void scan_message(const ScannedPlace& place, ByteReader fields,
+                    std::vector<MessagePlace>& places);
   std::optional<std::uint64_t> scan_endless_chunk(std::uint64_t offset, std::uint64_t end);
   void take_channels_of_damaged(std::uint64_t offset, std::uint64_t length);
 
@@ -335,7 +341,8 @@ void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
     }
     for (ByteReader entries = index.part("entries of a message index"); entries.left() > 0;) {
       ByteReader entry = entries.part(16, "entry of a message index");
-      skipped_.guard(no_time, [&] {
+      const Loss loss = {chunks_[chunk].times(), {channels_[number].topic}};
+      skipped_.guard(loss, [&] {
         const std::int64_t time = entry.nanoseconds("time of a message");
         places.push_back({time, entry.u64("offset of a message"), chunk, number});
       });
@@ -429,7 +436,6 @@ std::string_view McapRecording::message_at(const MessagePlace& place) {
 /// that is not complete is just missing.
 void McapRecording::scan(std::uint64_t data_start) {
   const std::uint64_t end = file_.size() - (is_closed_ ? magic.size() + footer_size : 0);
-  std::int64_t last = earliest;  // of the messages before
   for (std::uint64_t offset = data_start; end - offset >= record_head;) {
     const Bytes bytes = file_.read(offset, record_head, "record");
     ByteReader head = reader(offset, bytes);
@@ -440,26 +446,34 @@ void McapRecording::scan(std::uint64_t data_start) {
     const bool is_whole = opcode != 0 && length <= room;
     const bool is_known = opcode < first_unknown || opcode >= first_private;
     std::uint64_t next = offset + record_head + length;
-    TimeRange lost = {last, latest};
+    const std::int64_t last = last_scanned();
+    bool is_lost = true;
     if (is_whole && is_known) {
       scan_record(opcode, offset, length);
-      if (!chunks_.empty()) last = chunks_.back().end;
+      if (last_scanned() > last) skipped_.close(last_scanned());
     } else if (!is_whole) {
       const auto behind = opcode == Opcode::chunk ? scan_endless_chunk(offset, end) : std::nullopt;
-      lost = behind ? no_time : TimeRange{last, latest};
+      is_lost = !behind;
       next = behind ? *behind : next_chunk(offset + 1, end);
     }
     if (!(is_whole && is_known) && (is_closed_ || next < end)) {
-      skipped_.guard(lost, [&] {
+      const auto fail = [&] {
         file_.fail(offset,
                    "a record of opcode " + std::to_string(opcode) + " and " +
                        std::to_string(length) + " bytes",
                    "one of opcode 1 to 15, or 128 to 255, and at most " + std::to_string(room));
-      });
+      };
+      is_lost ? skipped_.guard_open(last, fail) : skipped_.guard(no_time, fail);
     }
     offset = next;
   }
   keep_chunk(std::move(loose_));
+}
+
+/// Of the messages that scan() found so far.
+std::int64_t McapRecording::last_scanned() const {
+  const std::int64_t loose = loose_.places.empty() ? earliest : loose_.places.back().time;
+  return chunks_.empty() ? loose : std::max(loose, chunks_.back().end);
 }
 
 void McapRecording::scan_record(std::uint8_t opcode, std::uint64_t offset, std::uint64_t length) {
@@ -472,7 +486,7 @@ void McapRecording::scan_record(std::uint8_t opcode, std::uint64_t offset, std::
     });
   } else if (opcode == Opcode::message) {
     const Bytes bytes = file_.read(content, std::min(length, message_head), "message");
-    scan_message(offset, reader(content, bytes), loose_.places);
+    scan_message({offset, {last_scanned(), latest}}, reader(content, bytes), loose_.places);
   } else if (opcode == Opcode::chunk) {
     scan_chunk(offset, length);
   }
@@ -491,7 +505,7 @@ void McapRecording::scan_chunk(std::uint64_t offset, std::uint64_t length, bool 
     chunk.end = times.to;
   };
   Bytes content;
-  if (skipped_.guard({}, read_times) &&
+  if (skipped_.guard_open(last_scanned(), read_times) &&
       skipped_.guard(chunk.times(), [&] { content = load(offset + record_head, length); })) {
     scan_content(chunk, content.view(), chunk.places);
     keep_chunk(std::move(chunk));
@@ -540,7 +554,9 @@ void McapRecording::scan_content(const RecordedChunk& chunk, std::string_view co
     for (ByteReader all({file_, 0, chunk.offset}, content); all.left() > 0;) {
       const std::uint64_t place = all.offset();
       const Record record = next_record(all);
-      if (record.opcode == Opcode::message) scan_message(place, record.content, places);
+      if (record.opcode == Opcode::message) {
+        scan_message({place, chunk.times()}, record.content, places);
+      }
       if (record.opcode != Opcode::schema && record.opcode != Opcode::channel) continue;
       skipped_.guard(no_time, [&] {
         record.opcode == Opcode::schema ? read_schema(record.content)
@@ -550,17 +566,19 @@ void McapRecording::scan_content(const RecordedChunk& chunk, std::string_view co
   });
 }
 
-void McapRecording::scan_message(std::uint64_t offset, ByteReader fields,
+void McapRecording::scan_message(const ScannedPlace& place, ByteReader fields,
                                  std::vector<MessagePlace>& places) {
-  skipped_.guard(no_time, [&] {
+  Loss loss{place.times};
+  skipped_.guard(loss, [&] {
     const std::uint16_t id = fields.u16("channel");
     const std::uint32_t channel = channel_of(id);
+    if (channel < channels_.size()) loss.topics = {channels_[channel].topic};
     if (channel == channels_.size()) {
       fields.fail("a message of channel " + std::to_string(id), "a channel that comes before");
     }
     fields.u32("sequence of a message");
     const std::int64_t time = fields.nanoseconds("time of a message");
-    places.push_back({time, offset, 0, channel});
+    places.push_back({time, place.offset, 0, channel});
   });
   if (++places_ > most_places) {
     file_.refuse("has no index and more than " + std::to_string(most_places) +

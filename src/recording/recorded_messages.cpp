@@ -173,7 +173,7 @@ std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopi
   recording.visit({topic.name}, range.from, range.to, [&](const RecordedMessage& message) {
     MessageHead head;
     const auto read = [&] { head = read_head(recording.path(), message, span == 0); };
-    if (!recording.skipped().guard({message.time, message.time}, read)) return true;
+    if (!recording.skipped().guard(loss_of(message), read)) return true;
     heads.push_back(std::move(head));
     points += std::min<std::uint64_t>(heads.back().size.pixels(), most_recorded_points);
     if (span > 0 && points > most_recorded_points) {

@@ -58,7 +58,7 @@ TransformTree read_transforms(RecordingFile& recording, const std::vector<TimeRa
   };
   const auto transforms_in = [&](const RecordedMessage& message) {
     std::vector<StampedTransform> found;
-    recording.skipped().guard({message.time, message.time},
+    recording.skipped().guard(loss_of(message),
                               [&] { found = decode_transforms(recording.path(), message); });
     return found;
   };
@@ -129,7 +129,7 @@ CameraMessage read_camera(RecordingFile& recording, const std::string& topic, st
   for (const std::int64_t from : {time, earliest}) {
     if (camera) break;
     recording.visit({topic}, from, latest, [&](const RecordedMessage& message) {
-      return !recording.skipped().guard({message.time, message.time},
+      return !recording.skipped().guard(loss_of(message),
                                         [&] { camera = decode_camera(recording.path(), message); });
     });
   }
@@ -203,9 +203,13 @@ class ScanReader {
                                   ? std::vector<TimeRange>()
                                   : std::vector<TimeRange>{around(transforms_about)},
                               for_scan())),
-        asked_from_(query.time.value_or(0.0) == 0.0
-                        ? earliest
-                        : later(topic_.first, nanoseconds_of(*query.time, "time"))),
+        asked_{query.time.value_or(0.0) == 0.0
+                   ? earliest
+                   : later(topic_.first, nanoseconds_of(*query.time, "time")),
+               query.span > 0.0
+                   ? later(topic_.first, nanoseconds_of(query.time.value_or(0.0), "time") +
+                                             nanoseconds_of(query.span, "span"))
+                   : heads_.front().time},
         depth_unit_(query.depth_unit) {
     if (!target_.empty() && !is_target_known()) {
       tree_ = read_transforms(recording, farther(), for_scan());
@@ -238,7 +242,7 @@ class ScanReader {
     }
     scan.is_counted = is_counted_;
     require_depths_in_range(scan.cloud);
-    add_doubts(scan.warnings);
+    add_doubts(scan.merge, scan.warnings);
     return scan;
   }
 
@@ -318,7 +322,7 @@ class ScanReader {
     const auto [from, to] = std::minmax({stamp, later(stamp, -lag)});
     return tree_.moved(target_, head.header.frame, from, to);
   }
-  void add_doubts(std::vector<Warning>& warnings) const {
+  void add_doubts(ScanMerge merge, std::vector<Warning>& warnings) const {
     const std::string which = topic_.name + " at " + time_text(topic_, first().time) + ": ";
     const auto misplaced = std::find_if(heads_.begin(), heads_.end(), [&](const MessageHead& head) {
       return !target_.empty() && is_misplaced(head);
@@ -340,13 +344,12 @@ class ScanReader {
               "span, by which the ground in it is smeared: name a frame that stands "
               "on the ground, or a span in which it stood");
     }
-    add_missing(warnings);
+    add_missing(merge, warnings);
     const auto unit = doubt_of_unit();
     if (unit) warnings.push_back(*unit);
   }
   /// Where parts of the recording are not there.
-  void add_missing(std::vector<Warning>& warnings) const {
-    constexpr std::int64_t soon = one_second;  // ours
+  void add_missing(ScanMerge merge, std::vector<Warning>& warnings) const {
     if (recording_.is_cut_off()) {
       warnings.emplace_back(WarningCode::recording_cut_off,
                             recording_.path() +
@@ -357,16 +360,24 @@ class ScanReader {
                             false);
     }
     if (recording_.skipped().count() == 0) return;
-    // A message that was asked for may be lost, and a much later one have taken its place.
-    const auto lost = recording_.skipped().first_lost(asked_from_, first().time);
-    const bool is_late = lost && time_between(*lost, first().time) > soon;
-    warnings.emplace_back(
-        WarningCode::recording_cut_off,
-        recording_.path() + ": " + recording_.skipped().text() +
-            (is_late ? "; the message asked for may be among what is lost, for the first one that "
-                       "is left was recorded more than a second later"
-                     : ""),
-        is_late);
+    const std::string missing = missing_of(merge);
+    warnings.emplace_back(WarningCode::recording_cut_off,
+                          recording_.path() + ": " + recording_.skipped().text() + missing,
+                          !missing.empty());
+  }
+  /// What may be missing of the scan; empty: nothing. Of frames that are averaged each shows all.
+  std::string missing_of(ScanMerge merge) const {
+    constexpr std::int64_t soon = one_second;  // ours
+    const auto lost = recording_.skipped().first_lost(topic_.name, asked_);
+    if (lost && *lost < first().time && time_between(*lost, first().time) > soon) {
+      return "; the message asked for may be among what is lost, for the first one that is left "
+             "was "
+             "recorded more than a second later";
+    }
+    if (!lost || merge != ScanMerge::joined) return "";
+    return "; messages of " + topic_.name +
+           " in the span asked for may be among what is lost, and "
+           "what they saw be missing";
   }
   /// Of an image whose unit is so wrong that nothing is left of it.
   void require_depths_in_range(const Cloud& cloud) const {
@@ -456,7 +467,7 @@ class ScanReader {
       if (heads_[i].time != message.time) return true;
       std::vector<Eigen::Vector3d> points;
       const auto read = [&] { points = points_of(message); };
-      if (!recording_.skipped().guard({message.time, message.time}, read)) return true;
+      if (!recording_.skipped().guard(loss_of(message), read)) return true;
       return take(heads_[i], std::move(points)) && ++i < heads_.size();
     };
     recording_.visit({topic_.name}, first().time, heads_.back().time, show);
@@ -511,7 +522,7 @@ class ScanReader {
   std::string target_;
   std::vector<MessageHead> heads_;  ///< of the messages to be used, in the order of their times
   TransformTree tree_;
-  std::int64_t asked_from_;  ///< the earliest time of a message that was asked for
+  TimeRange asked_;  ///< times of messages that were asked for
   std::optional<double> depth_unit_;
   std::optional<Pinhole> pinhole_;  ///< of a depth image
   bool is_counted_ = false;
@@ -523,7 +534,7 @@ std::string first_frame(RecordingFile& recording, const RecordedTopic& topic) {
   std::string frame;
   if (use == MessageUse::none || use == MessageUse::transforms) return frame;
   recording.visit({topic.name}, topic.first, topic.first, [&](const RecordedMessage& message) {
-    recording.skipped().guard({message.time, message.time},
+    recording.skipped().guard(loss_of(message),
                               [&] { frame = decode_header(recording.path(), message).frame; });
     return false;
   });
@@ -554,6 +565,7 @@ RecordingContents describe_recording(RecordingFile& recording) {
   contents.is_cut_off = recording.is_cut_off();
   contents.damaged_parts = recording.skipped().count();
   contents.first_damage = recording.skipped().first();
+  for (const auto& [why, loss] : recording.skipped().parts()) contents.damage.push_back(why);
   return contents;
 }
 
@@ -576,7 +588,7 @@ std::map<std::string, double> joint_positions(RecordingFile& recording, double t
                   [&](const RecordedMessage& message) {
                     const std::int64_t away = std::abs(time_between(at, message.time));
                     std::vector<std::pair<std::string, double>> found;
-                    recording.skipped().guard({message.time, message.time}, [&] {
+                    recording.skipped().guard(loss_of(message), [&] {
                       found = decode_joints(recording.path(), message);
                     });
                     for (const auto& [name, position] : found) {
@@ -595,7 +607,9 @@ std::map<std::string, double> joint_positions(RecordingFile& recording, double t
 }
 
 RecordingContents describe_recording(const std::string& path) {
-  return describe_recording(*open_recording(path));
+  const auto recording = open_recording(path);
+  recording->check();
+  return describe_recording(*recording);
 }
 
 RecordedScan read_recorded_scan(const RecordingQuery& query) {

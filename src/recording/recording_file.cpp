@@ -120,6 +120,9 @@ class Recording : public RecordingFile {
   bool is_cut_off() const override { return is_cut_off_; }
   void visit(const std::vector<std::string>& topics, std::int64_t from, std::int64_t to,
              const MessageVisitor& visitor) override;
+  void check() override {
+    for (const Part& part : parts_) part.container->check();
+  }
 
  private:
   /// A file that holds messages.
@@ -139,7 +142,8 @@ class Recording : public RecordingFile {
   std::size_t add_topic(const std::string& file, const RecordedTopic& topic);
   void sort_topics();
   void set_start();
-  bool show(const Open& open, const MessageVisitor& visitor);
+  bool show(const Open& open, const std::vector<std::string>& topics,
+            const MessageVisitor& visitor);
 
   std::string path_;
   std::vector<RecordedTopic> topics_;
@@ -155,7 +159,8 @@ void Recording::add(const std::string& file, std::unique_ptr<Container> containe
   bool is_empty = true;
   for (const RecordedTopic& topic : part.container->topics()) {
     std::size_t number = no_topic;
-    skipped().guard(no_time, [&] { number = add_topic(file, topic); });
+    const TimeRange times = topic.messages > 0 ? TimeRange{topic.first, topic.last} : no_time;
+    skipped().guard(Loss{times, {topic.name}}, [&] { number = add_topic(file, topic); });
     part.topics.push_back(number);
     if (topic.messages == 0 || number == no_topic) continue;
     is_empty = false;
@@ -242,18 +247,20 @@ void Recording::visit(const std::vector<std::string>& topics, std::int64_t from,
       ++part;
       continue;
     }
-    if (first == open.end() || !show(*first, visitor)) return;
+    if (first == open.end() || !show(*first, topics, visitor)) return;
     if (!first->cursor->next()) open.erase(first);
   }
 }
 
 /// Shows a message, unless it is damaged. @return false if no more are wanted
-bool Recording::show(const Open& open, const MessageVisitor& visitor) {
+bool Recording::show(const Open& open, const std::vector<std::string>& topics,
+                     const MessageVisitor& visitor) {
   const std::int64_t time = open.cursor->time();
   StoredMessage stored;
   Bytes uncompressed;
   std::string place;
-  const bool is_whole = skipped().guard({time, time}, [&] {
+  const Loss loss = {{time, time}, {topics.begin(), topics.end()}};
+  const bool is_whole = skipped().guard(loss, [&] {
     stored = open.cursor->read();
     const RecordedTopic& topic = topics_[open.part->topics[stored.topic]];
     place = "message of " + topic.name + " at " +

@@ -25,6 +25,11 @@ struct RecordedMessage {
   std::string place;       ///< for messages: "message 17 of /tf at 12.5 s"
 };
 
+/// Of this message alone.
+inline Loss loss_of(const RecordedMessage& message) {
+  return {{message.time, message.time}, {message.topic.name}};
+}
+
 /// Goes on to the next message if it returns true.
 using MessageVisitor = std::function<bool(const RecordedMessage& message)>;
 
@@ -43,6 +48,7 @@ class RecordingFile {
   /// times. @throws Unsupported naming file, place, what was found and what was expected
   virtual void visit(const std::vector<std::string>& topics, std::int64_t from, std::int64_t to,
                      const MessageVisitor& visitor) = 0;
+  virtual void check() {}  ///< finds all chunks that are damaged
 
  private:
   SkippedParts skipped_;

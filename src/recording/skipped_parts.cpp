@@ -14,17 +14,34 @@ void widen(TimeRange& times, const TimeRange& by) {
 
 }  // namespace
 
-void SkippedParts::add(const std::string& why, const TimeRange& times) {
+void SkippedParts::add(const std::string& why, const Loss& loss) {
   if (first_.empty()) first_ = why;
   const auto known = whys_.find(why);
   if (known != whys_.end()) {
-    widen(known->second, times);
+    std::set<std::string>& topics = known->second.topics;
+    widen(known->second.times, loss.times);
+    if (loss.topics.empty()) topics.clear();
+    if (!topics.empty()) topics.insert(loss.topics.begin(), loss.topics.end());
   } else if (whys_.size() < most_kept) {
-    whys_.emplace(why, times);
+    whys_.emplace(why, loss);
   } else {
     ++more_;
-    widen(of_more_, times);
+    widen(of_more_, loss.times);
   }
+}
+
+void SkippedParts::add_open(const std::string& why, std::int64_t from) {
+  if (whys_.count(why) > 0) return;  // it was met before, and its end told
+  open_.push_back(why);
+  add(why, {{from, latest}});
+}
+
+void SkippedParts::close(std::int64_t to) {
+  for (const std::string& why : open_) {
+    const auto found = whys_.find(why);
+    if (found != whys_.end()) found->second.times.to = std::max(found->second.times.from, to);
+  }
+  open_.clear();
 }
 
 std::string SkippedParts::text() const {
@@ -35,13 +52,16 @@ std::string SkippedParts::text() const {
          first_;
 }
 
-std::optional<std::int64_t> SkippedParts::first_lost(std::int64_t from, std::int64_t to) const {
+std::optional<std::int64_t> SkippedParts::first_lost(const std::string& topic,
+                                                     const TimeRange& range) const {
   std::optional<std::int64_t> first;
   const auto look_at = [&](const TimeRange& times) {
-    if (times.from > times.to || times.from > to || times.to < from) return;
-    first = std::min(first.value_or(latest), std::max(times.from, from));
+    if (times.from > times.to || times.from > range.to || times.to < range.from) return;
+    first = std::min(first.value_or(latest), std::max(times.from, range.from));
   };
-  for (const auto& [why, times] : whys_) look_at(times);
+  for (const auto& [why, loss] : whys_) {
+    if (loss.topics.empty() || loss.topics.count(topic) > 0) look_at(loss.times);
+  }
   look_at(of_more_);
   return first;
 }

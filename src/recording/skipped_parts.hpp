@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct TimeRange {
   std::int64_t to = latest;
 };
 
+/// Messages that may have been lost.
+struct Loss {
+  TimeRange times;
+  std::set<std::string> topics = {};  ///< empty: any
+};
+
 /// Of damage that no message was lost by, as what it hits is known from elsewhere.
 constexpr TimeRange no_time = {latest, earliest};
 
@@ -37,12 +44,38 @@ class Unsupported : public Error {
 class SkippedParts {
  public:
   /// @param why  as an error says it: "file: byte 17: found X, expected Y"
-  /// @param times  of messages that may have been in it
-  void add(const std::string& why, const TimeRange& times = {});
+  /// @param loss  of what may have been in it
+  void add(const std::string& why, const Loss& loss);
+  /// Of what lay behind a time; close() says before which.
+  void add_open(const std::string& why, std::int64_t from);
+  void close(std::int64_t to);
 
   /// Runs `work`. @return false if it found damage (Error of bad_file), which is noted
   template <typename Work>
+  bool guard(const Loss& loss, const Work& work) {
+    return run(work, [&](const std::string& why) { add(why, loss); });
+  }
+  template <typename Work>
   bool guard(const TimeRange& times, const Work& work) {
+    return guard(Loss{times}, work);
+  }
+  /// Likewise, noted by add_open().
+  template <typename Work>
+  bool guard_open(std::int64_t from, const Work& work) {
+    return run(work, [&](const std::string& why) { add_open(why, from); });
+  }
+
+  const std::map<std::string, Loss>& parts() const { return whys_; }  ///< at most 1000
+  std::uint64_t count() const { return whys_.size() + more_; }
+  const std::string& first() const { return first_; }  ///< why; empty if there are none
+  /// "3 parts are damaged and left out, the first: ..."; empty if there are none.
+  std::string text() const;
+  /// The earliest time in a range of a message of a topic that may have been in one of them.
+  std::optional<std::int64_t> first_lost(const std::string& topic, const TimeRange& range) const;
+
+ private:
+  template <typename Work, typename Note>
+  static bool run(const Work& work, const Note& note) {
     try {
       work();
       return true;
@@ -50,21 +83,13 @@ class SkippedParts {
       throw;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_file) throw;
-      add(error.what(), times);
+      note(error.what());
       return false;
     }
   }
 
-  const std::map<std::string, TimeRange>& parts() const { return whys_; }  ///< at most 1000
-  std::uint64_t count() const { return whys_.size() + more_; }
-  const std::string& first() const { return first_; }  ///< why; empty if there are none
-  /// "3 parts are damaged and left out, the first: ..."; empty if there are none.
-  std::string text() const;
-  /// The earliest time, from `from` up to `to`, of a message that may have been in one of them.
-  std::optional<std::int64_t> first_lost(std::int64_t from, std::int64_t to) const;
-
- private:
-  std::map<std::string, TimeRange> whys_;
+  std::map<std::string, Loss> whys_;
+  std::vector<std::string> open_;  ///< of these, whose end is not known yet
   std::string first_;
   std::uint64_t more_ = 0;       ///< beyond those that are kept
   TimeRange of_more_ = no_time;  ///< their times

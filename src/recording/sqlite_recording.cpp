@@ -98,13 +98,15 @@ class SqliteRecording : public Container {
   std::optional<std::int64_t> next_readable(std::int64_t row);
   void visit_row(sqlite3_stmt* row, const RowVisitor& visit);
   void count_messages();
+  void add_row(const MessageRow& row, std::vector<MessageRow>& rows) const;
   std::vector<MessageRow> rows_by_index(const std::string& ids, std::int64_t from, std::int64_t to);
   std::string text(sqlite3_stmt* statement, int column, const std::string& name);
   [[noreturn]] void fail(const std::string& what);
 
   std::string path_;
-  std::uint64_t size_ = 0;      // [byte]
-  bool has_lost_rows_ = false;  // a page of the messages is damaged
+  std::uint64_t size_ = 0;        // [byte]
+  bool has_lost_rows_ = false;    // a page of the messages is damaged
+  bool has_lost_topics_ = false;  // a row of the topics is
   Connection connection_{nullptr, &sqlite3_close_v2};
   std::uint64_t steps_left_ = 0;  // thousands of them, that a statement may still take
   std::map<std::int64_t, std::size_t> topic_of_id_;
@@ -295,7 +297,7 @@ void SqliteRecording::read_topics() {
   const Statement rows = prepare("SELECT id, name, type, serialization_format FROM topics");
   const auto next = [&] {
     bool has_row = false;
-    skipped_.guard({}, [&] { has_row = step(rows.get()); });
+    skipped_.guard(TimeRange{}, [&] { has_row = step(rows.get()); });
     return has_row;
   };
   while (next()) {
@@ -303,7 +305,7 @@ void SqliteRecording::read_topics() {
       throw Unsupported(path_ + ": table topics: found more rows, expected at most " +
                         std::to_string(most_topics));
     }
-    skipped_.guard(no_time, [&] { read_topic(rows.get()); });
+    if (!skipped_.guard(no_time, [&] { read_topic(rows.get()); })) has_lost_topics_ = true;
   }
   usual_times_.resize(topics_.size());
 }
@@ -330,11 +332,11 @@ void SqliteRecording::each_row(const RowVisitor& visit) {
     const Statement rows =
         prepare("SELECT rowid, topic_id, timestamp FROM messages WHERE rowid >= ? ORDER BY rowid");
     sqlite3_bind_int64(rows.get(), 1, from);
-    const bool is_whole = skipped_.guard({last_time, latest}, [&] {
+    const bool is_whole = skipped_.guard_open(last_time, [&] {
       while (step(rows.get())) {
         last = sqlite3_column_int64(rows.get(), 0);
         visit_row(rows.get(), [&](const MessageRow& row) {
-          last_time = row.time;
+          if (row.time > last_time) skipped_.close(last_time = row.time);
           visit(row);
         });
       }
@@ -385,9 +387,17 @@ std::optional<std::int64_t> SqliteRecording::next_readable(std::int64_t row) {
 }
 
 void SqliteRecording::visit_row(sqlite3_stmt* row, const RowVisitor& visit) {
-  skipped_.guard(no_time, [&] {
-    const auto found = topic_of_id_.find(integer(row, 1, "topic_id"));
-    if (found == topic_of_id_.end()) return;
+  Loss loss{TimeRange{}};
+  const std::int64_t time = sqlite3_column_int64(row, 2);
+  if (sqlite3_column_type(row, 2) == SQLITE_INTEGER && time >= 0) loss.times = {time, time};
+  skipped_.guard(loss, [&] {
+    const std::int64_t id = integer(row, 1, "topic_id");
+    const auto found = topic_of_id_.find(id);
+    if (found == topic_of_id_.end()) {
+      if (has_lost_topics_) return;
+      fail_at(path_, "column topic_id", std::to_string(id), "an id of the table topics");
+    }
+    loss.topics = {topics_[found->second].name};
     visit({integer(row, 2, "timestamp"), sqlite3_column_int64(row, 0), found->second});
   });
 }
@@ -416,6 +426,14 @@ void SqliteRecording::require_readable(std::size_t topic) const {
                     in_quotes(formats_[topic]) + ", expected 'cdr'");
 }
 
+void SqliteRecording::add_row(const MessageRow& row, std::vector<MessageRow>& rows) const {
+  if (rows.size() == most_rows) {
+    throw Unsupported(path_ + ": has more than " + std::to_string(most_rows) +
+                      " messages of one query");
+  }
+  rows.push_back(row);
+}
+
 std::vector<MessageRow> SqliteRecording::rows_by_index(const std::string& ids, std::int64_t from,
                                                        std::int64_t to) {
   std::vector<MessageRow> found;
@@ -426,11 +444,7 @@ std::vector<MessageRow> SqliteRecording::rows_by_index(const std::string& ids, s
   sqlite3_bind_int64(rows.get(), 1, from);
   sqlite3_bind_int64(rows.get(), 2, to);
   while (step(rows.get())) {
-    visit_row(rows.get(), [&](const MessageRow& row) { found.push_back(row); });
-    if (found.size() > most_rows) {
-      throw Unsupported(path_ + ": has more than " + std::to_string(most_rows) +
-                        " messages of one query");
-    }
+    visit_row(rows.get(), [&](const MessageRow& row) { add_row(row, found); });
   }
   return found;
 }
@@ -450,7 +464,7 @@ std::unique_ptr<MessageCursor> SqliteRecording::messages(const std::vector<std::
   if (has_lost_rows_ || !skipped_.guard(no_time, by_index)) {
     rows.clear();
     each_row([&](const MessageRow& row) {
-      if (is_asked_for[row.topic] && row.time >= from && row.time <= to) rows.push_back(row);
+      if (is_asked_for[row.topic] && row.time >= from && row.time <= to) add_row(row, rows);
     });
     std::sort(rows.begin(), rows.end());
   }

@@ -83,7 +83,8 @@ Json recording_json(const std::string& file, const RecordingContents& contents) 
           {"frames", contents.frames},
           {"cut_off", contents.is_cut_off},
           {"damaged_parts", contents.damaged_parts},
-          {"first_damage", contents.first_damage}};
+          {"first_damage", contents.first_damage},
+          {"damage", contents.damage}};
 }
 
 }  // namespace excavplan

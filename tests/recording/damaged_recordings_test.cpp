@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include <excavplan/recording/recording.hpp>
+
 #include "base/random.hpp"
 #include "support/errors.hpp"
 #include "support/recording_files.hpp"
@@ -507,6 +509,43 @@ TEST(SpoiltRecordings, ABadTimeSpoilsItsMessageAlone) {
                {"scene_unchunked.mcap", mcap_time(1, 3, late), "/tf 1 ", "over a year from"},
                {"scene_none.bag", bag_time(1, 0, 0), "/tf 1 ", "over a year from the others"},
                {"scene_none.bag", bag_time(1, 2, end), "/tf 1 ", "over a year from the others"}});
+}
+
+/// The channel of a topic of an MCAP file.
+std::uint64_t mcap_channel(const string& bytes, const string& topic) {
+  for (int i = 0;; ++i) {
+    const std::size_t at = mcap_record(bytes, 4, i);
+    if (bytes.substr(at + 17, get(bytes, at + 13, 4)) == topic) return get(bytes, at + 9, 2);
+  }
+}
+
+TEST(SpoiltRecordings, AMessageWithABadTimeIsLostToItsTopicAlone) {
+  const TempFolder folder;
+  for (const string topic : {"/tf", "/lidar/points"}) {
+    string content = content_of(recording("scene_unchunked.mcap"));
+    mcap_time(mcap_channel(content, topic), 1, ~std::uint64_t{0})(content);
+    const auto file = open_recording(folder.write("spoilt", content));
+    const TimeRange ever;
+    EXPECT_TRUE(file->skipped().first_lost(topic, ever)) << topic;
+    EXPECT_FALSE(file->skipped().first_lost(topic == "/tf" ? "/lidar/points" : "/tf", ever));
+  }
+}
+
+/// A chunk with an index is read only if it is asked for.
+TEST(SpoiltRecordings, AllDamagedChunksAreToldWhereTheContentsAre) {
+  const TempFolder folder;
+  string content = content_of(recording("scene_none.mcap"));
+  EXPECT_TRUE(describe_recording(recording("scene_none.mcap")).damage.empty());
+  for (const int chunk : {1, 2}) {
+    const std::size_t at = mcap_record(content, 6, chunk);
+    content[at + get(content, at + 1, 8) / 2] ^= 0x55;
+  }
+  const RecordingContents contents = describe_recording(folder.write("spoilt", content));
+  EXPECT_EQ(contents.damaged_parts, 2U);
+  ASSERT_EQ(contents.damage.size(), 2U);
+  for (const string& each : contents.damage) {
+    EXPECT_NE(each.find("found a chunk of CRC"), string::npos) << each;
+  }
 }
 
 /// Changes bytes in the middle of the k-th chunk of an MCAP file; without its index if so.

@@ -374,7 +374,7 @@ TEST(RecordedScan, AMessageThatIsDamagedIsLeftOutAndSaid) {
   EXPECT_EQ(all.cloud.points.size(), 4U);
   ASSERT_EQ(all.warnings.size(), 1U);
   EXPECT_EQ(all.warnings[0].code, WarningCode::recording_cut_off);
-  EXPECT_FALSE(all.warnings[0].ends_trust) << "the next one came at once";
+  EXPECT_TRUE(all.warnings[0].ends_trust) << "what they saw may be missing";
   EXPECT_NE(all.warnings[0].message.find("run: 2 parts are damaged and left out, the first: run: "
                                          "message 1 of /points: found "),
             std::string::npos)
@@ -739,6 +739,35 @@ TEST(RecordedScan, JointPositionsAreTheNearestOfEachName) {
 }
 
 // ---- Damage -----------------------------------------------------------------------------------
+
+/// Of a topic and times of which a message may be lost, whether the scan may lack soil.
+TEST(RecordedScan, WhatIsLostOfItsTopicAndTimesAloneEndsTrust) {
+  const auto doubts = [](const Loss& loss, double time, double span, std::size_t height) {
+    RecordingInMemory recording;
+    for (int i = 0; i < 30; ++i) {
+      Points seen = organised(1.0, 2.0, 3.0, 4.0);
+      if (height == 1 && i % 2 == 0) seen.pop_back();  // frames that are joined
+      recording.add("/points", cloud_type, i * 100 * ms,
+                    cloud_bytes(epoch + i * 100 * ms, "lidar", seen, height));
+    }
+    recording.skipped().add("run: a part", loss);
+    const RecordedScan scan = read_recorded_scan(recording, query_of("/points", time, span));
+    EXPECT_EQ(scan.warnings.size(), 1U);
+    EXPECT_EQ(scan.warnings.at(0).code, WarningCode::recording_cut_off);
+    return scan.warnings.at(0).ends_trust;
+  };
+  const TimeRange second = {epoch + 1000 * ms, epoch + 1200 * ms};
+  EXPECT_TRUE(doubts({second, {"/points"}}, 0.5, 1.0, 1)) << "in the span";
+  EXPECT_TRUE(doubts({second}, 0.5, 1.0, 1)) << "perhaps of it";
+  EXPECT_FALSE(doubts({second, {"/tf", "/imu"}}, 0.5, 1.0, 1)) << "of other topics";
+  EXPECT_FALSE(doubts({second, {"/points"}}, 2.0, 0.5, 1)) << "before the span";
+  EXPECT_FALSE(doubts({second, {"/points"}}, 0.1, 0.5, 1)) << "after it";
+  EXPECT_FALSE(doubts({second, {"/points"}}, 0.5, 1.0, 2))
+      << "each of the averaged frames shows all";
+  EXPECT_FALSE(doubts({second, {"/points"}}, 1.0, 0.0, 1)) << "the next one is as good";
+  EXPECT_FALSE(doubts({no_time}, 0.5, 1.0, 1));
+  EXPECT_TRUE(doubts({{}, {"/points"}}, 0.5, 1.0, 1)) << "at a time that is not known";
+}
 
 /// Every message of a scan with depths, transforms and several frames, changed at random.
 TEST(RecordedScan, MutatedRecordingsEndInAScanOrAnError) {

@@ -37,8 +37,11 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
   }
   if (contents.is_cut_off) listing.lines.emplace_back("its end is missing");
   if (contents.damaged_parts > 0) {
-    listing.lines.push_back("damaged and left out: " + std::to_string(contents.damaged_parts) +
-                            ", the first: " + contents.first_damage);
+    listing.lines.push_back("damaged and left out: " + std::to_string(contents.damaged_parts));
+    constexpr std::size_t most = 20;  // ours
+    const std::size_t count = std::min(most, contents.damage.size());
+    for (std::size_t i = 0; i < count; ++i) listing.lines.push_back("  " + contents.damage[i]);
+    if (contents.damage.size() > most) listing.lines.emplace_back("  ...");
   }
   const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
   const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);

@@ -45,11 +45,13 @@ struct RecordingContents {
   /// Between which there are transforms: of /tf_static, and of the first second of /tf; sorted.
   std::vector<std::string> frames;
   bool is_cut_off = false;          ///< its end is missing, as that of a recorder that was killed
-  std::uint64_t damaged_parts = 0;  ///< that were left out, as far as they were met
+  std::uint64_t damaged_parts = 0;  ///< that are left out
   std::string first_damage;         ///< "file: place: found X, expected Y"; empty without one
+  std::vector<std::string> damage;  ///< of each part likewise, at most 1000
 };
 
-/// Reads the index of a recording and the first message of each topic.
+/// Reads the index of a recording, all its chunks, which may be damaged, and the first message of
+/// each topic.
 RecordingContents describe_recording(const std::string& path);
 
 /// Which points of a recording.
