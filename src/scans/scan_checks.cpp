@@ -78,19 +78,6 @@ std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
           " m: volumes of a dig need finer ones; write the coordinates with more digits"};
 }
 
-/// Of points that hold no data, which were left out.
-std::optional<Warning> no_data(const ScanOutline& seen, const Scan& scan) {
-  if (seen.no_data.empty()) return std::nullopt;
-  std::string heights;
-  for (const double height : seen.no_data) {
-    heights += (heights.empty() ? "" : " or ") + number_text(height);
-  }
-  return Warning{WarningCode::outliers, name_of(scan) + ": " +
-                                            readable(100.0 * seen.no_data_share, 2) +
-                                            " % of the points have z = " + heights +
-                                            ", which stands for no data: they were left out"};
-}
-
 /// Of a machine that takes nothing out of scans, or most of them.
 std::optional<Warning> not_in_view(const OutlinedPair& pair) {
   constexpr double most = 0.5;  // ours, of a scan
@@ -334,14 +321,29 @@ std::vector<Warning> causes_of(std::vector<Warning> warnings) {
   return warnings;
 }
 
+std::optional<Warning> check_no_data(const ScanOutline& seen, const Scan& scan) {
+  if (seen.no_data.empty()) return std::nullopt;
+  constexpr std::uint64_t counted = 1 << 16;  // points: of more a sample is looked at
+  std::string heights;
+  for (const double height : seen.no_data) {
+    heights += (heights.empty() ? "" : " or ") + number_text(height);
+  }
+  return Warning{WarningCode::outliers,
+                 name_of(scan) + ": " + readable(100.0 * seen.no_data_share, 2) +
+                     " % of the points, " + (seen.points > counted ? "about " : "") +
+                     std::to_string(seen.no_data_points) + ", have z = " + heights +
+                     ", which stands for no data: they were left out",
+                 false};
+}
+
 std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   std::vector<Warning> found = pair.scans.before.doubts;
   found.insert(found.end(), pair.scans.after.doubts.begin(), pair.scans.after.doubts.end());
   const auto add = [&found](std::optional<Warning> warning) {
     if (warning) found.push_back(std::move(*warning));
   };
-  add(no_data(pair.before, pair.scans.before));
-  add(no_data(pair.after, pair.scans.after));
+  add(check_no_data(pair.before, pair.scans.before));
+  add(check_no_data(pair.after, pair.scans.after));
   add(too_small(pair));
   add(other_units(pair));
   add(coarse_heights(pair));

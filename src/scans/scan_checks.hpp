@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@
 /// (docs/methods.md#checks-of-the-scans). Private to the library.
 
 namespace excavplan {
+
+/// Code `outliers`, which does not end trust: points that hold no data were left out.
+std::optional<Warning> check_no_data(const ScanOutline& seen, const Scan& scan);
 
 /// Codes `units` (too small, or one scan in other units than the other), `coarse_heights` (rounded
 /// to more than 2 cm) and `frame` (a camera's, or z is not up), all of which end trust.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -110,41 +111,65 @@ bool stands_for_none(double height) {
   return is_nines || size >= huge || size == 32767.0 || size == 32768.0 || size == 65535.0;
 }
 
-/// Heights that mean "none": such numbers where three points and more share them far from all
-/// others, and a zero that a few points in a hundred share where hardly any share another height.
+/// Runs far from the heights beside them that three points and more share and whose number is known
+/// to mean "none", or that a good part of the points shares.
+std::vector<Run> candidates_of(const std::vector<Run>& runs, double points) {
+  constexpr std::size_t fewest = 3;     // ours
+  constexpr double apart = 10.0;        // ours, of files in metres
+  constexpr double least_share = 0.05;  // ours, of a number that is not known
+  constexpr double most_share = 0.5;    // ours: more is the ground
+  std::vector<Run> found;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool is_apart = (i == 0 || runs[i].height - runs[i - 1].height > apart) &&
+                          (i + 1 == runs.size() || runs[i + 1].height - runs[i].height > apart);
+    const double share = static_cast<double>(runs[i].count) / points;
+    const bool is_often = share >= least_share && share <= most_share;
+    if (!is_apart || runs[i].count < fewest) continue;
+    if (is_often || stands_for_none(runs[i].height)) found.push_back(runs[i]);
+  }
+  return found;
+}
+
+/// Candidates far from where most of the other heights lie.
+std::vector<double> far_runs(const std::vector<Run>& runs, const std::vector<double>& sorted) {
+  constexpr double least = 10.0;   // ours, of files in metres
+  constexpr double ranges = 10.0;  // ours, of the others from tenth to tenth
+  constexpr double rounding = 1e-6;
+  const std::vector<Run> candidates = candidates_of(runs, static_cast<double>(sorted.size()));
+  std::vector<double> others;
+  std::remove_copy_if(sorted.begin(), sorted.end(), std::back_inserter(others), [&](double height) {
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [&](const Run& run) { return std::abs(run.height - height) <= rounding; });
+  });
+  std::vector<double> found;
+  if (others.empty()) return found;
+  const std::size_t n = others.size();
+  const double far = std::max(least, ranges * (others[n * 9 / 10] - others[n / 10]));
+  for (const Run& run : candidates) {
+    if (std::abs(run.height - others[n / 2]) > far) found.push_back(run.height);
+  }
+  return found;
+}
+
+/// Heights that mean "none": those far from all others, and a zero that a few points in a hundred
+/// share where hardly any share another height.
 std::vector<double> no_data_in(const std::vector<double>& sorted) {
-  constexpr std::size_t fewest = 3;      // ours
-  constexpr double apart = 10.0;         // ours, of files in metres; and the range of the others
+  constexpr std::size_t fewest = 6;      // points; ours
   constexpr double least_share = 0.002;  // ours, of a zero
   constexpr double most_share = 0.2;     // ours: more is ground that someone drew
   constexpr double more_often = 20.0;    // ours, than the next that is shared
   constexpr double same = 1e-9;
-  const auto points = static_cast<double>(sorted.size());
-  if (sorted.size() < 2 * fewest) return {};
-  const double middle = sorted[sorted.size() / 2];
-  const double range = sorted[sorted.size() * 9 / 10] - sorted[sorted.size() / 10];
-  const double far = std::max(apart, 10.0 * range);
+  if (sorted.size() < fewest) return {};
   const std::vector<Run> runs = runs_of(sorted, same);
-  std::size_t zeros = 0;
-  std::size_t next = 1;
-  std::vector<double> found;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto gap = [&](std::size_t other) {
-      return std::abs(runs[i].height - runs[other].height);
-    };
-    const bool is_far = std::abs(runs[i].height - middle) > far && (i == 0 || gap(i - 1) > apart) &&
-                        (i + 1 == runs.size() || gap(i + 1) > apart);
-    if (is_far && runs[i].count >= fewest && stands_for_none(runs[i].height)) {
-      found.push_back(runs[i].height);
-    } else if (std::abs(runs[i].height) <= same) {
-      zeros = runs[i].count;
-    } else {
-      next = std::max(next, runs[i].count);
-    }
+  std::vector<double> found = far_runs(runs, sorted);
+  double zeros = 0.0, next = 1.0;
+  for (const Run& run : runs) {
+    if (std::find(found.begin(), found.end(), run.height) != found.end()) continue;
+    double& count = std::abs(run.height) <= same ? zeros : next;
+    count = std::max(count, static_cast<double>(run.count));
   }
-  const auto many = static_cast<double>(zeros);
-  if (many > least_share * points && many < most_share * points &&
-      many > more_often * static_cast<double>(next)) {
+  const auto points = static_cast<double>(sorted.size());
+  if (zeros > least_share * points && zeros < most_share * points && zeros > more_often * next) {
     found.push_back(0.0);
   }
   return found;
@@ -232,8 +257,9 @@ void CloudOutline::drop_no_data(std::vector<Eigen::Vector3d>& points, ScanOutlin
                               }),
                points.end());
   outline.no_data_share = 1.0 - static_cast<double>(points.size()) / before;
-  outline.finite_points -= static_cast<std::uint64_t>(outline.no_data_share *
-                                                      static_cast<double>(outline.finite_points));
+  outline.no_data_points = static_cast<std::uint64_t>(
+      std::llround(outline.no_data_share * static_cast<double>(outline.finite_points)));
+  outline.finite_points -= outline.no_data_points;
 }
 
 ScanOutline CloudOutline::result() const {

@@ -17,8 +17,7 @@
 #include <excavplan/ground/surface.hpp>
 
 /// @file
-/// Surfaces from scans: files of any size, which are read more than once and never held, or
-/// clouds in memory, which give the same bytes.
+/// Surfaces from scans: files of any size, read several times and not held, or clouds in memory.
 
 namespace excavplan {
 
@@ -57,11 +56,12 @@ struct ScanOutline {
   std::uint64_t finite_points = 0;   ///< inside the area
   std::uint64_t machine_points = 0;  ///< that Scan::machine held, left out
   std::vector<double> no_data;       ///< heights as Scan::no_data that are found in it
-  double no_data_share = 0.0;       ///< of its points that have these, which count nowhere else [-]
-  std::optional<Rectangle> extent;  ///< as plan_extent(); none without finite points
-  double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
-  double height_step = 0.0;         ///< of heights that were rounded; 0: they were not [m]
-  double height = 0.0;  ///< from the lowest to the highest point but 0.1 % on either side [m]
+  double no_data_share = 0.0;  ///< of its points that have these, which count nowhere else [-]
+  std::uint64_t no_data_points = 0;  ///< likewise; of large scans an estimate
+  std::optional<Rectangle> extent;   ///< as plan_extent(); none without finite points
+  double density = 0.0;      ///< points per m^2 of occupied ground; NaN if they have no area
+  double height_step = 0.0;  ///< of heights that were rounded; 0: they were not [m]
+  double height = 0.0;       ///< from the lowest to the highest point but 0.1 % on either side [m]
   /// Share of the points within 60 degrees of z, 0.1 to 20 m along it, as a depth camera sees [-].
   double seen_along_z = 0.0;
   /// Direction in which the points scatter least, z >= 0: the normal of the ground.
