@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.hpp"
+#include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
 
 namespace excavplan {
@@ -104,6 +106,39 @@ class ObstacleFinder {
 }  // namespace
 
 CellMask find_obstacles(const HeightMap& highest) { return ObstacleFinder(highest).find(); }
+
+std::optional<ObstacleTop> highest_obstacle(
+    const Terrain& terrain, const std::function<bool(const Eigen::Vector2d&)>& in_part) {
+  const ArrayXXd& tops = terrain.obstacles;
+  const ArrayXXd& returns = terrain.obstacle_returns.size() > 0 ? terrain.obstacle_returns : tops;
+  std::optional<ObstacleTop> highest;
+  for_each_cell(tops, [&](Cell at) {
+    const double top = tops(at.row, at.col), seen = returns(at.row, at.col);
+    const Eigen::Vector2d place(terrain.bank.x(at.col), terrain.bank.y(at.row));
+    if (std::isnan(top) || !in_part(place)) return;
+    if (!highest) highest = ObstacleTop{place, top, seen};
+    if (top > highest->counted) {
+      highest->place = place;
+      highest->counted = top;
+    }
+    highest->seen = std::max(highest->seen, seen);
+  });
+  return highest;
+}
+
+std::optional<ObstacleTop> highest_obstacle(const Terrain& terrain, const Eigen::Vector2d& about,
+                                            double within) {
+  return highest_obstacle(terrain, [&](const Eigen::Vector2d& place) {
+    return (place - about).cwiseAbs().maxCoeff() <= within;
+  });
+}
+
+std::string text(const ObstacleTop& top) {
+  constexpr double same = 0.05;  // ours [m]
+  if (!(top.counted - top.seen > same)) return readable(top.counted, 2) + " m high";
+  return readable(top.seen, 2) + " m high by its highest return and counted up to " +
+         readable(top.counted, 2) + " m";
+}
 
 Terrain with_obstacles(const Terrain& terrain) {
   if (terrain.obstacles.size() > 0) return terrain;

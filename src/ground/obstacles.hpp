@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <string>
+
 #include <Eigen/Core>
 
 #include <excavplan/ground/terrain.hpp>
@@ -23,6 +27,21 @@ using CellMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 /// of the map without a face.
 /// @param highest  of each cell; NaN: unknown
 CellMask find_obstacles(const HeightMap& highest);
+
+/// The highest of what stands in a part of a terrain.
+struct ObstacleTop {
+  Eigen::Vector2d place;  ///< where it is counted highest [m]
+  double counted;         ///< Terrain::obstacles [m]
+  double seen;            ///< highest return [m]
+};
+/// @param in_part  of places; nothing if nothing stands there
+std::optional<ObstacleTop> highest_obstacle(
+    const Terrain& terrain, const std::function<bool(const Eigen::Vector2d&)>& in_part);
+/// Likewise in a square about a place, to so far from it [m].
+std::optional<ObstacleTop> highest_obstacle(const Terrain& terrain, const Eigen::Vector2d& about,
+                                            double within);
+/// "1.5 m high", or "1.5 m high by its highest return and counted up to 2.4 m".
+std::string text(const ObstacleTop& top);
 
 /// The terrain with what find_obstacles() finds on its surface, unless it has obstacles already.
 Terrain with_obstacles(const Terrain& terrain);

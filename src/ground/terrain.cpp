@@ -32,7 +32,12 @@ void require_terrain(const Terrain& terrain, const char* what) {
     if (layer->size() == 0 || same_size(*layer, z)) continue;
     refuse(std::string(what) + ": void ratios must be as large as the map");
   }
-  if (terrain.obstacles.size() > 0 && !same_size(terrain.obstacles, z)) {
+  const Eigen::ArrayXXd& tops = terrain.obstacles;
+  const Eigen::ArrayXXd& returns = terrain.obstacle_returns;
+  const auto& thin = terrain.thin_obstacles;
+  if ((tops.size() > 0 && !same_size(tops, z)) ||
+      (returns.size() > 0 && !same_size(returns, tops)) ||
+      (thin.size() > 0 && (thin.rows() != tops.rows() || thin.cols() != tops.cols()))) {
     refuse(std::string(what) + ": obstacles must be as large as the map");
   }
 }

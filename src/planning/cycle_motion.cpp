@@ -11,6 +11,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "ground/obstacles.hpp"
 #include "ground/terrain.hpp"
 #include "machine/front_check.hpp"
 #include "planning/front_load.hpp"
@@ -24,6 +25,7 @@ constexpr double deepest = 0.1;            // of the bucket in the ground at the
 constexpr double step = 0.05;              // of the joints from pose to pose [rad]
 constexpr double rise = 0.1;               // of the boom, by which it tries to pass higher [rad]
 constexpr double tips = pi / 18.0;         // of a full bucket, from which it loses soil [rad]
+constexpr double beside = 0.1;             // a place, where what stands is told of it [m]
 constexpr double widest_swing = 2.0 * pi;  // from dig to dump [rad]
 
 /// That hold the front on the way between two places: of each joint that which takes more power.
@@ -41,7 +43,10 @@ class CycleWay {
       : machine_(machine), load_(load), empty_(machine), loaded_(machine, load.payload_mass) {}
 
   /// Needed by go().
-  void stand_on(const Terrain& ground) { surroundings_.emplace(machine_, ground); }
+  void stand_on(const Terrain& ground) {
+    surroundings_.emplace(machine_, ground);
+    ground_ = &ground;
+  }
 
   void start_at(const FrontJoints& joints) {
     way_.poses.push_back({DigPhase::approach, joints, JointAngles::Zero()});
@@ -150,9 +155,11 @@ class CycleWay {
     stop.phase = phase;
     stop.place = at.place;
     stop.clearance = at.height;
+    const double within = beside + ground_->bank.cell_size;
+    const auto top = highest_obstacle(*ground_, at.place.head<2>(), within);
     const std::string where = " at x = " + readable(at.place.x(), 2) +
                               " m, y = " + readable(at.place.y(), 2) + " m, where it is " +
-                              readable(at.place.z(), 2) + " m high";
+                              (stands && top ? text(*top) : readable(at.place.z(), 2) + " m high");
     stop.message = std::string(name(phase)) + ": the machine would be " +
                    (at.height < 0.0 ? readable(-at.height, 2) + " m in the " + what
                                     : "only " + readable(at.height, 2) + " m above the " + what) +
@@ -163,6 +170,7 @@ class CycleWay {
   const Machine& machine_;
   const DigLoad& load_;
   std::optional<Surroundings> surroundings_;
+  const Terrain* ground_ = nullptr;  ///< of these
   UnseenGround unseen_;
   double tipped_ = 0.0;  ///< most of a full bucket [rad]
   FrontLoad empty_, loaded_;

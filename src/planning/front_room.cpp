@@ -53,7 +53,8 @@ std::vector<double> widened(const std::vector<double>& heights, double cell_size
 std::string describe(const FrontContact& contact) {
   return std::string("the ") + contact.link +
          " would pass through the ground at x = " + readable(contact.x, 2) + " m: it would be " +
-         readable(contact.lowest, 2) + " m high, the ground is " + readable(contact.z, 2) +
+         readable(contact.lowest, 2) +
+         " m high, the ground, or what is counted to stand there, is " + readable(contact.z, 2) +
          " m high";
 }
 

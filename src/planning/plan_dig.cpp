@@ -92,14 +92,16 @@ void judge_strip(const Task& task, DigPlan& plan) {
   const Eigen::ArrayXXd& tops = task.ground.obstacles;
   const HeightMap& map = task.ground.bank;
   const double half = 0.5 * task.machine.bucket.width_outside;
+  constexpr double beside = 0.3;  // ours: what is hidden of an obstacle counts so far [m]
   for (Eigen::Index col = 0; tops.size() > 0 && col < map.z.cols(); ++col) {
     if (map.x(col) < task.machine.track_front) continue;
     for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
       if (std::abs(map.y(row)) > half || std::isnan(tops(row, col))) continue;
       warn(plan, {WarningCode::obstacle_in_strip,
-                  "at x = " + readable(map.x(col)) + " m something stands " +
-                      readable(tops(row, col), 2) + " m high where the bucket could dig: no dig " +
-                      "is planned there"});
+                  "at x = " + readable(map.x(col)) + " m something stands where the bucket could " +
+                      "dig, which is " +
+                      text(*highest_obstacle(task.ground, {map.x(col), map.y(row)}, beside)) +
+                      ": no dig is planned there"});
       return;
     }
   }
@@ -514,6 +516,7 @@ DigPlan plan_dig(const Task& task) {
   DigPlan plan;
   plan.method = task.options.method;
   plan.attitude = plan.on_slope = task.options.attitude;
+  for (const Warning& doubt : task.ground.doubts) warn(plan, doubt);
   judge_density(task, plan);
   if (!task.level || task.options.standing_on) judge_standing(task, plan);
   judge_strip(task, plan);

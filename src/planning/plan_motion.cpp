@@ -2,13 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/plan_motion.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/obstacles.hpp"
+#include "ground/terrain.hpp"
+#include "planning/front_load.hpp"
 #include "planning/motion_load.hpp"
 
 namespace excavplan {
@@ -41,6 +47,39 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const D
                                                  const CycleWayOptions& way,
                                                  const MotionOptions& motion) {
   return plan_motion(machine, level_swing_ground(machine), plan, way, motion);
+}
+
+std::optional<Warning> check_dump_place(const Machine& machine, const Terrain& ground,
+                                        const DigPlan& plan, const CycleOptions& cycle) {
+  const Machine standing = with_attitude(machine, plan.attitude);
+  require_terrain(ground, "ground of the dump place");
+  if (!plan.dig || !standing.swing || plan.path.poses.empty()) return std::nullopt;
+  const JointAngles clear = plan.path.poses.back().joints;
+  const double height = std::max(cycle.dump_height, pin_height(standing, clear));
+  const JointAngles full = raised(standing, clear, height);
+  double near = std::numeric_limits<double>::infinity(), far = -near;
+  for (const JointAngles& joints : {full, opened(standing, full)}) {
+    const LinkPositions links = link_positions(standing, joints);
+    for (const Eigen::Vector2d& corner : standing.bucket.profile) {
+      const double x = bucket_point(links, corner).x();
+      near = std::min(near, x);
+      far = std::max(far, x);
+    }
+  }
+  const Eigen::Vector2d ahead(std::cos(cycle.swing), std::sin(cycle.swing));
+  const double half = 0.5 * standing.bucket.width_outside;
+  const auto below_bucket = [&](const Eigen::Vector2d& place) {
+    const double along = place.dot(ahead);
+    const double aside = ahead.x() * place.y() - ahead.y() * place.x();
+    return along >= near && along <= far && std::abs(aside) <= half;
+  };
+  const auto top = highest_obstacle(ground, below_bucket);
+  if (!top || !(top->seen > height)) return std::nullopt;
+  return Warning{WarningCode::obstacle_at_dump,
+                 "at the dump place, x = " + readable(top->place.x(), 2) +
+                     " m, y = " + readable(top->place.y(), 2) + " m, something stands that is " +
+                     text(*top) + ", above the dump height of " + readable(height, 2) +
+                     " m: dump elsewhere or higher"};
 }
 
 }  // namespace excavplan

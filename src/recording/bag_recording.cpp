@@ -124,7 +124,11 @@ class BagRecording : public ChunkedContainer {
 
   void require_version() const;
   bool read_index();
-  void read_records(std::uint64_t start, std::uint32_t connections, std::uint32_t chunks);
+  struct Index {
+    std::uint64_t start;  // in the file
+    std::uint32_t connections, chunks;
+  };
+  void read_records(const Index& index);
   void take_connection(const Fields& fields, ByteReader content, const ByteReader& place);
   void read_chunk_info(ByteReader& records, std::uint64_t end);
   void bound_chunks(std::uint64_t end);
@@ -158,7 +162,7 @@ bool BagRecording::read_index() {
   const std::uint64_t index = fields.number("index_pos", 8);
   is_cut_off_ = index == 0 || index >= file_.size();
   if (is_cut_off_) return false;
-  read_records(index, fields.u32("conn_count"), fields.u32("chunk_count"));
+  read_records({index, fields.u32("conn_count"), fields.u32("chunk_count")});
   return true;
 }
 
@@ -173,22 +177,21 @@ Bytes BagRecording::header_at(std::uint64_t offset) const {
   return file_.read(offset + 4, length, "header of a record");
 }
 
-void BagRecording::read_records(std::uint64_t start, std::uint32_t connections,
-                                std::uint32_t chunks) {
-  if (file_.size() - start > most_index_bytes) {
-    file_.fail(magic.size(), "an index at byte " + std::to_string(start),
+void BagRecording::read_records(const Index& index) {
+  if (file_.size() - index.start > most_index_bytes) {
+    file_.fail(magic.size(), "an index at byte " + std::to_string(index.start),
                "one of at most " + std::to_string(most_index_bytes) + " bytes in the " +
                    std::to_string(file_.size()) + " of the file");
   }
-  const Bytes bytes = file_.read(start, file_.size() - start, "index");
-  ByteReader records({file_, start}, bytes.view());
-  for (std::uint32_t i = 0; i < connections; ++i) {
+  const Bytes bytes = file_.read(index.start, file_.size() - index.start, "index");
+  ByteReader records({file_, index.start}, bytes.view());
+  for (std::uint32_t i = 0; i < index.connections; ++i) {
     const Fields fields(records.part("header of a connection"));
     fields.require_op(Op::connection);
     take_connection(fields, records.part("connection"), records);
   }
-  for (std::uint32_t i = 0; i < chunks; ++i) read_chunk_info(records, start);
-  bound_chunks(start);
+  for (std::uint32_t i = 0; i < index.chunks; ++i) read_chunk_info(records, index.start);
+  bound_chunks(index.start);
 }
 
 /// A bag without an index from front to back: chunks and what connects their messages with topics.

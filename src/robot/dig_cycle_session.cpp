@@ -303,7 +303,8 @@ ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) 
             {{WarningCode::level_ground, "no scan came yet: the ground is taken to be level",
               !settings.level_ground}}};
   }
-  ScannedTerrain ground = terrain_from_scan(*scan, planning_extent(settings.machine), cell);
+  ScannedTerrain ground{terrain_from_scan(*scan, planning_extent(settings.machine), cell).terrain,
+                        {}};  // its doubts are those of the plan
   if (is_outdated()) {
     ground.warnings.emplace_back(WarningCode::ground_before_dig,
                                  "no scan came since the last dig began: the ground is taken to be "

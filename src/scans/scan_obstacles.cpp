@@ -31,6 +31,8 @@ constexpr double largest_cell = 0.25;  // [m]
 constexpr double wire_width = 0.1;     // to both sides of the line of a wire [m]
 constexpr double widest_wire = 1.0;    // to which its direction is known [m]
 constexpr double above_wire = 1.0;     // [m]
+constexpr double thin_post = 0.1;      // of its returns in plan, from end to end [m]
+constexpr Index fewest_returns = 3;    // of what hangs, within 0.3 m: not outliers
 constexpr double nothing = -std::numeric_limits<double>::infinity();
 
 /// Cells of a map, of which each holds some of the cells of a finer one, and 3 m around these.
@@ -67,20 +69,32 @@ class ObstacleCells {
     below = std::max(below, p.z());
   }
 
-  /// The tops of obstacles; `nothing` where there is none.
-  ArrayXXd obstacles() const {
+  /// The tops of obstacles on the cells of the map that these were made for.
+  void put_obstacles(const HeightMap& grid, SeenTops& tops) const {
     HeightMap shape = highest_;
     shape.z = (highest_.z > nothing).select(highest_.z, top_);
     shape.z = (shape.z > nothing).select(shape.z, std::nan("")).eval();
     const CellMask found = find_obstacles(shape);
+    const CellMask seen = found && highest_.z > nothing;
     const ArrayXXd next = highest_within(below_, 1);
     const ArrayXXd above = (next_ray * (top_ - next)).min(most_above);
-    ArrayXXd result = widened((found && highest_.z > nothing).select(shape.z + above, nothing));
-    for (const Wire& wire : find_wires(hanging(found, next))) enter(wire, result);
-    return result;
+    const CellMask hangs = hanging(found, next);
+    Layers all;
+    all.tops = widened(seen.select(shape.z + above, nothing));
+    all.returns = widened(seen.select(shape.z, nothing));
+    all.thin = widened((several(hangs) || posts(seen, next)).select(shape.z, nothing));
+    for (const Wire& wire : find_wires(returns_of(hangs))) enter(wire, all);
+    tops.obstacles = on(grid, all.tops);
+    tops.returns = on(grid, all.returns);
+    tops.thin = on(grid, all.thin).isFinite();
   }
 
-  /// On the cells of the map that these were made for.
+ private:
+  /// Each `nothing` where there is none.
+  struct Layers {
+    ArrayXXd tops, returns, thin;
+  };
+
   ArrayXXd on(const HeightMap& grid, const ArrayXXd& values) const {
     ArrayXXd fine(grid.z.rows(), grid.z.cols());
     for (Index col = 0; col < fine.cols(); ++col) {
@@ -92,23 +106,59 @@ class ObstacleCells {
     return fine;
   }
 
- private:
-  /// Returns of obstacles with nothing below them but the ground, and ground all around: not the
-  /// edge of a roof.
+  /// The cells of a mask for which `holds`.
+  template <typename Holds>
+  static CellMask those(const CellMask& mask, Holds holds) {
+    CellMask some = mask;
+    for_each_cell(mask, [&](Cell at) { some(at.row, at.col) = mask(at.row, at.col) && holds(at); });
+    return some;
+  }
+
+  CellMask several(const CellMask& hangs) const {
+    return those(hangs, [&](Cell at) {
+      Index count = 0;
+      for_each_around(hangs, at, cells(hidden), [&](Cell n) { count += hangs(n.row, n.col); });
+      return count >= fewest_returns;
+    });
+  }
+
+  /// Obstacles with returns between the highest and the ground, all within the thickness of a post.
+  CellMask posts(const CellMask& seen, const ArrayXXd& next) const {
+    return those(seen && next > ground() + low, [&](Cell at) {
+      Vector2d least(x_(at.row, at.col), y_(at.row, at.col)), most = least;
+      for_each_around(seen, at, cells(hidden), [&](Cell n) {
+        if (!seen(n.row, n.col)) return;
+        least = least.cwiseMin(Vector2d(x_(n.row, n.col), y_(n.row, n.col)));
+        most = most.cwiseMax(Vector2d(x_(n.row, n.col), y_(n.row, n.col)));
+      });
+      return (most - least).norm() <= thin_post;
+    });
+  }
+
+  /// The lowest around, infinite where nothing is seen.
+  ArrayXXd ground() const {
+    const ArrayXXd known = (highest_.z > nothing).select(highest_.z, -nothing);
+    return lowest_within(known, cells(1.0));
+  }
+
+  /// Obstacles with nothing below them but the ground, and ground all around: not the edge of a
+  /// roof.
   /// @param next  level below the highest of each cell and those beside it
-  std::vector<Vector3d> hanging(const CellMask& found, const ArrayXXd& next) const {
+  CellMask hanging(const CellMask& found, const ArrayXXd& next) const {
     const ArrayXXd& z = highest_.z;
-    const ArrayXXd known = (z > nothing).select(z, -nothing);
-    const ArrayXXd ground = lowest_within(known, cells(1.0));
+    const ArrayXXd ground = this->ground();
     const CellMask hangs = found && z > top_ - level && next < ground + low;
     const ArrayXXd bodies = (found && !hangs).select(ArrayXXd::Ones(z.rows(), z.cols()), 0.0);
     const ArrayXXd beside_body = highest_within(bodies, cells(0.35));
+    return those(hangs && beside_body <= 0.0,
+                 [&](Cell at) { return ground_around(at, ground(at.row, at.col) + low); });
+  }
+
+  std::vector<Vector3d> returns_of(const CellMask& some) const {
     std::vector<Vector3d> points;
-    for (Index col = 0; col < z.cols(); ++col) {
-      for (Index row = 0; row < z.rows(); ++row) {
-        if (!hangs(row, col) || beside_body(row, col) > 0.0) continue;
-        if (!ground_around({row, col}, ground(row, col) + low)) continue;
-        points.emplace_back(x_(row, col), y_(row, col), z(row, col));
+    for (Index col = 0; col < some.cols(); ++col) {
+      for (Index row = 0; row < some.rows(); ++row) {
+        if (some(row, col)) points.emplace_back(x_(row, col), y_(row, col), highest_.z(row, col));
       }
     }
     return points;
@@ -157,16 +207,19 @@ class ObstacleCells {
     return __builtin_popcount(seen) >= 7;
   }
 
-  void enter(const Wire& wire, ArrayXXd& tops) const {
-    for (Index col = 0; col < tops.cols(); ++col) {
-      for (Index row = 0; row < tops.rows(); ++row) {
+  void enter(const Wire& wire, Layers& all) const {
+    for (Index col = 0; col < all.tops.cols(); ++col) {
+      for (Index row = 0; row < all.tops.rows(); ++row) {
         const Vector2d d = Vector2d(highest_.x(col), highest_.y(row)) - wire.middle;
         const double along = std::abs(d.dot(wire.direction));
         const double off = std::abs(wire.direction.x() * d.y() - wire.direction.y() * d.x());
         const double unsure = wire.turn * std::max(0.0, along - wire.half);
         const double half = wire_width + 0.5 * highest_.cell_size + unsure;
         if (unsure > widest_wire || off > half) continue;
-        tops(row, col) = std::max(tops(row, col), wire.top + above_wire);
+        all.tops(row, col) = std::max(all.tops(row, col), wire.top + above_wire);
+        for (ArrayXXd* layer : {&all.returns, &all.thin}) {
+          (*layer)(row, col) = std::max((*layer)(row, col), wire.top);
+        }
       }
     }
   }
@@ -207,7 +260,7 @@ SeenTops seen_tops(const Scan& scan, const HeightMap& grid, const TopsOptions& o
     }
   });
   tops.highest = (tops.highest > nothing).select(tops.highest, std::nan("")).eval();
-  tops.obstacles = cells.on(grid, cells.obstacles());
+  cells.put_obstacles(grid, tops);
   return tops;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,9 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
+#include "ground/grid_cells.hpp"
 #include "scans/scan_agreement.hpp"
+#include "scans/scan_checks.hpp"
 #include "scans/scan_obstacles.hpp"
 #include "scans/scan_reading.hpp"
 
@@ -32,7 +35,18 @@ constexpr double above_reach = 0.5;  // what is higher is in nobody's way
 
 constexpr double dig_ceiling = 20.0;  // of what may stand in the way of a dig; ours [m]
 
+constexpr double enough_for_two = 40.0;  // points, that two surfaces are told by; ours
+
 constexpr double interpolated = 1.0, shaped = 3.5;  // around an extent; ours [m]
+
+/// The scan without its points that hold no data.
+Scan of_data(const Scan& scan, std::optional<Warning>* told = nullptr) {
+  const ScanOutline seen = outline(scan);
+  if (told != nullptr) *told = check_no_data(seen, scan);
+  Scan rest = scan;
+  rest.no_data.insert(rest.no_data.end(), seen.no_data.begin(), seen.no_data.end());
+  return rest;
+}
 
 /// Points of the extent, with so much around it, all as if seen from one place.
 Scan cropped(const Scan& scan, const Rectangle& extent, double around) {
@@ -80,11 +94,41 @@ HeightMap filled_from(const HeightMap& first, const HeightMap& second) {
 }
 
 /// Ground with what stands on it, below which none is seen.
-Terrain terrain_with(HeightMap ground, const Eigen::ArrayXXd& obstacles) {
-  ground.z = obstacles.isFinite().select(std::nan(""), ground.z).eval();
+Terrain terrain_with(HeightMap ground, const SeenTops& tops) {
+  ground.z = tops.obstacles.isFinite().select(std::nan(""), ground.z).eval();
   Terrain terrain = undisturbed(ground);
-  if (obstacles.isFinite().any()) terrain.obstacles = obstacles;
+  if (!tops.obstacles.isFinite().any()) return terrain;
+  terrain.obstacles = tops.obstacles;
+  terrain.obstacle_returns = tops.returns;
+  terrain.thin_obstacles = tops.thin;
   return terrain;
+}
+
+/// What stands on a terrain, on all of its cells.
+SeenTops tops_of(const Terrain& terrain) {
+  const auto rows = terrain.bank.z.rows(), cols = terrain.bank.z.cols();
+  SeenTops tops;
+  const bool any = terrain.obstacles.size() > 0;
+  tops.obstacles = any ? terrain.obstacles : Eigen::ArrayXXd::Constant(rows, cols, std::nan(""));
+  const bool has_returns = terrain.obstacle_returns.size() > 0;
+  tops.returns = has_returns ? terrain.obstacle_returns : tops.obstacles;
+  const bool has_thin = terrain.thin_obstacles.size() > 0;
+  tops.thin = has_thin ? terrain.thin_obstacles : CellMask::Constant(rows, cols, false);
+  return tops;
+}
+
+/// With what stood on the earlier ground where the present one is unknown, or where it is so thin
+/// that the present scan need not have hit it. What else stood where now is ground has gone.
+SeenTops tops_of_both(const Terrain& present, const Terrain& earlier) {
+  SeenTops tops = tops_of(present);
+  const SeenTops before = tops_of(earlier);
+  const CellMask none = tops.obstacles.isNaN();
+  const CellMask stay =
+      none && !before.obstacles.isNaN() && (present.highest().z.isNaN() || before.thin);
+  tops.obstacles = stay.select(before.obstacles, tops.obstacles).eval();
+  tops.returns = stay.select(before.returns, tops.returns).eval();
+  tops.thin = (tops.thin || (stay && before.thin)).eval();
+  return tops;
 }
 
 /// What a scan shows of an extent.
@@ -105,12 +149,40 @@ Seen seen_of(const Scan& scan, const Rectangle& extent) {
 /// Two points lie in such a cell [m].
 double cell_of(const Seen& seen) { return std::sqrt(2.0 / seen.density); }
 
-HeightMap ground_of(const Seen& seen, double raster_cell, double widest_gap,
-                    const Rectangle& extent, double cell_size) {
+Surface surface_of(const Seen& seen, double raster_cell) {
   RasterOptions raster;
   raster.cell_size = raster_cell;
-  const HeightMap map = survey_surface(seen.near, seen.extent, raster).height;
-  return resampled(map, extent, cell_size, widest_gap);
+  return survey_surface(seen.near, seen.extent, raster);
+}
+
+/// Code `two_surfaces` for ground but not for what stands on it, which is an obstacle.
+std::optional<Warning> overlaid(const std::string& name, const Surface& surface,
+                                const Terrain& terrain) {
+  constexpr double least = 0.02;     // of a height in doubt; ours [m]
+  constexpr double noted = 0.01;     // of the ground; ours, as of a bulking factor
+  constexpr double doubtful = 0.03;  // likewise
+  const HeightMap& map = surface.height;
+  double seen = 0.0, in_doubt = 0.0, doubt = 0.0;
+  for_each_cell(map.z, [&](Cell at) {
+    const auto cell = cell_at(terrain.bank, map.x(at.col), map.y(at.row));
+    if (!cell || std::isnan(map.z(at.row, at.col))) return;
+    if (terrain.obstacles.size() > 0 && !std::isnan(terrain.obstacles(cell->row, cell->col)))
+      return;
+    seen += 1.0;
+    const auto here = static_cast<double>(surface.doubt(at.row, at.col));
+    if (here < least) return;
+    in_doubt += 1.0;
+    doubt += here;
+  });
+  if (!(in_doubt > noted * seen)) return std::nullopt;
+  return Warning{WarningCode::two_surfaces,
+                 name + ": the points on " + readable(in_doubt * map.cell_size * map.cell_size, 2) +
+                     " m2 of the ground within reach lie on two surfaces, one above the other, "
+                     "which leaves " +
+                     readable(doubt / in_doubt, 2) +
+                     " m of its height in doubt: check the poses of the scans that are joined in "
+                     "it, and leave out dust, plants and what else is above the ground",
+                 in_doubt > doubtful * seen};
 }
 
 /// Where the machine stands that digs on an extent.
@@ -133,13 +205,22 @@ Rectangle own_place(const Machine& machine) {
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
   require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
           "> 0 m and finite");
-  const Seen seen = seen_of(scan, extent);
+  std::optional<Warning> no_data;
+  const Scan data = of_data(scan, &no_data);
+  const Seen seen = seen_of(data, extent);
   const double cell = std::max(cell_size, cell_of(seen));
   const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
-  const HeightMap ground = ground_of(seen, cell, widest_gap, extent, cell_size);
-  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
+  Surface surface = surface_of(seen, cell);
+  const HeightMap ground = resampled(surface.height, extent, cell_size, widest_gap);
+  const SeenTops tops = seen_tops(cropped(data, extent, shaped), ground,
                                   {cell_of(seen), dig_ceiling, behind(extent)});
-  ScannedTerrain result{terrain_with(ground, tops.obstacles), scan.doubts};
+  ScannedTerrain result{terrain_with(ground, tops), scan.doubts};
+  if (no_data) result.warnings.push_back(std::move(*no_data));
+  const double wide = std::sqrt(enough_for_two / seen.density);
+  if (wide > cell) surface = surface_of(seen, wide);
+  if (auto both = overlaid(name_of(scan), surface, result.terrain)) {
+    result.warnings.push_back(std::move(*both));
+  }
   if (const double unseen = unseen_area(ground); unseen > 0.0) {
     result.warnings.emplace_back(WarningCode::unseen_ground,
                                  name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
@@ -153,26 +234,28 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
             " points per m2 are too few for cells of " + readable(cell_size, 2) +
             " m; heights are interpolated between cells of " + readable(cell, 2) + " m");
   }
+  result.terrain.doubts = result.warnings;
   return result;
 }
 
 ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine) {
+  const Scan data = of_data(scan);
   const Rectangle extent = swing_extent(machine);
   const double cell_size = usual_cell(machine);
-  const Seen seen = seen_of(scan, extent);
+  const Seen seen = seen_of(data, extent);
   const auto ground_on = [&](double smallest) {
     const double cell = std::max(cell_size, smallest);
     const double widest_gap = std::clamp(motion_farthest - 2.0 * cell, 0.0, widest_filled);
-    return ground_of(seen, cell, widest_gap, extent, cell_size);
+    return resampled(surface_of(seen, cell).height, extent, cell_size, widest_gap);
   };
   HeightMap ground = ground_on(std::min(cell_of(seen), motion_cell));
   // Lines of points are dense, and yet apart.
   if (!ground.z.isFinite().all()) ground = filled_from(ground, ground_on(motion_cell));
   const double ceiling = machine.boom_pin.y() + machine.full_length() + above_reach;
-  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
+  const SeenTops tops = seen_tops(cropped(data, extent, shaped), ground,
                                   {cell_of(seen), ceiling, own_place(machine)});
   ground.z = (tops.highest > ground.z || ground.z.isNaN()).select(tops.highest, ground.z).eval();
-  return {terrain_with(std::move(ground), tops.obstacles), scan.doubts};
+  return {terrain_with(std::move(ground), tops), scan.doubts};
 }
 
 HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
@@ -193,14 +276,21 @@ ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier)
   if (const auto why = disagreement(now, before)) {
     warnings.emplace_back(WarningCode::surroundings_differ, *why + ": is one in another frame?");
   }
-  // What stood where now is ground has gone.
-  const auto is_unknown = now.z.isNaN();
-  Eigen::ArrayXXd obstacles = present.obstacles;
-  if (obstacles.size() == 0) obstacles = Eigen::ArrayXXd::Constant(now.z.rows(), now.z.cols(), NAN);
-  if (earlier.obstacles.size() > 0) {
-    obstacles = is_unknown.select(earlier.obstacles, obstacles).eval();
-  }
-  return {terrain_with(filled_from(ground, around), obstacles), std::move(warnings)};
+  return {terrain_with(filled_from(ground, around), tops_of_both(present, earlier)),
+          std::move(warnings)};
+}
+
+Terrain with_earlier_obstacles(const Terrain& present, const Terrain& earlier) {
+  require(same_grid(present.bank, earlier.bank),
+          "earlier obstacles: must have the cells of the present ground");
+  Terrain both = present;
+  const SeenTops tops = tops_of_both(present, earlier);
+  Terrain with = terrain_with(present.bank, tops);
+  both.bank = std::move(with.bank);
+  both.obstacles = std::move(with.obstacles);
+  both.obstacle_returns = std::move(with.obstacle_returns);
+  both.thin_obstacles = std::move(with.thin_obstacles);
+  return both;
 }
 
 }  // namespace excavplan

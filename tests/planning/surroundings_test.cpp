@@ -3,6 +3,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/motion.hpp>
 #include <excavplan/planning/cycle_motion.hpp>
+#include <excavplan/planning/plan_motion.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include <algorithm>
@@ -288,6 +289,38 @@ TEST(Surroundings, WhatStandsInTheSwingIsPassedAboveOrBlocks) {
   ASSERT_TRUE(std::holds_alternative<Way>(over));
   EXPECT_TRUE(std::get<Way>(over).warnings.empty());
   EXPECT_TRUE(std::holds_alternative<BlockedWay>(cycle_over(with_post(9.0), 2.0)));
+}
+
+/// Where the bucket dumps after a swing of 90 degrees, 3 m high.
+TEST(Surroundings, WhatStandsHigherThanTheDumpHeightAtTheDumpPlaceIsTold) {
+  const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
+  const DigPlan plan = plan_dig(zx120(), loam, GroundDensity{40.0});
+  ASSERT_TRUE(plan.dig);
+  const auto standing = [&](double y_from, double y_to, double counted, double seen) {
+    Terrain ground = level_swing_ground(zx120());
+    ground.obstacles = ground.obstacle_returns = ground.bank.z * std::nan("");
+    for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+      for (Eigen::Index row = 0; row < ground.bank.z.rows(); ++row) {
+        const double x = ground.bank.x(col), y = ground.bank.y(row);
+        if (std::abs(x) > 1.2 || y < y_from || y > y_to) continue;
+        ground.obstacles(row, col) = counted;
+        ground.obstacle_returns(row, col) = seen;
+        ground.bank.z(row, col) = std::nan("");
+      }
+    }
+    return check_dump_place(zx120(), ground, plan);
+  };
+  const auto wall = standing(4.0, 9.0, 4.5, 3.6);
+  ASSERT_TRUE(wall);
+  EXPECT_EQ(wall->code, WarningCode::obstacle_at_dump);
+  EXPECT_NE(
+      wall->message.find("3.6 m high by its highest return and counted up to 4.5 m, above the "
+                         "dump height of 3.0 m"),
+      std::string::npos)
+      << wall->message;
+  EXPECT_FALSE(standing(4.0, 9.0, 3.4, 2.6)) << "a truck";
+  EXPECT_FALSE(standing(-9.0, -4.0, 4.5, 3.6)) << "on the other side";
+  EXPECT_FALSE(check_dump_place(zx120(), level_swing_ground(zx120()), plan));
 }
 
 TEST(Surroundings, ABucketThatCannotKeepItsAttitudeIsToldOf) {

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ground/obstacles.hpp"
+
 #include "support/obstacle_judge.hpp"
 
 /// @file
@@ -76,6 +78,50 @@ TEST(ObstacleScan, NothingStandsOnBareGroundAndHeaps) {
   const auto bare = swing_terrain_from_scan(
       seen({Shape::Kind::cone, "heap", {4.0, 4.0, 0.0}, {1.5, 0.0, 0.9}}).scan(), zx120());
   EXPECT_EQ(bare.terrain.obstacles.size(), 0);
+}
+
+/// The present scan sees the ground around and below them, from elsewhere.
+Terrain with_earlier(const Shape& shape) {
+  const Scan empty = ray_scan({}, {{{0.3, -0.4, 3.2}, 0.006, 0.014}}, 2).scan();
+  return with_surroundings(swing_terrain_from_scan(empty, zx120()).terrain,
+                           swing_terrain_from_scan(seen(shape).scan(), zx120()).terrain)
+      .terrain;
+}
+
+/// No ray need hit it.
+TEST(ObstacleScan, AWireOfAnEarlierScanStays) {
+  Shape wire{Shape::Kind::wire, "wire", {-8.0, 4.0, 3.0}, {0.01, 0.0, 0.0}};
+  wire.to = Vector3d(8.0, 5.0, 3.4);
+  const HeightMap map = with_earlier(wire).highest();
+  for (double x = -7.0; x < 7.0; x += 0.25) EXPECT_GE(top_at(map, x, 4.5 + x / 16.0), 3.4) << x;
+  EXPECT_LT(top_at(map, 1.0, 6.5), 0.1);
+  const HeightMap mast =
+      with_earlier({Shape::Kind::post, "mast", {3.0, 5.0, 0.0}, {0.02, 0.0, 4.0}}).highest();
+  EXPECT_GE(top_at(mast, 3.0, 5.0), 3.8);
+}
+
+/// Rays through their place show that they have gone.
+TEST(ObstacleScan, PeopleAndTrucksOfAnEarlierScanThatLeftAreGone) {
+  using Kind = Shape::Kind;
+  const Terrain person = with_earlier({Kind::post, "person", {-3.0, -4.0, 0.0}, {0.22, 0.0, 1.7}});
+  EXPECT_LT(top_at(person.highest(), -3.0, -4.0), 0.1);
+  const Terrain truck = with_earlier({Kind::box, "truck", {0.0, 6.0, 0.0}, {5.0, 2.4, 2.6}});
+  EXPECT_LT(top_at(truck.highest(), 0.0, 6.0), 0.1);
+  EXPECT_LT(top_at(truck.highest(), 1.0, 5.0), 0.1);
+}
+
+TEST(ObstacleScan, TheHighestReturnIsKeptBesideTheTopThatIsCounted) {
+  const Terrain ground =
+      swing_terrain_from_scan(
+          seen({Shape::Kind::box, "wall", {0.0, 5.0, 0.0}, {4.0, 0.2, 2.0}}).scan(), zx120())
+          .terrain;
+  const auto top = highest_obstacle(ground, {0.0, 5.0}, 1.0);
+  ASSERT_TRUE(top);
+  EXPECT_GT(top->seen, 1.7);
+  EXPECT_LE(top->seen, 2.05);
+  EXPECT_GT(top->counted, top->seen);
+  EXPECT_LE(top->counted, top->seen + 1.0);
+  EXPECT_NE(text(*top).find("by its highest return and counted up to"), std::string::npos);
 }
 
 /// Shift and turn show by what stands there, relief by the heights themselves.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/ground/resampling.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/random.hpp"
+#include "base/text.hpp"
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
@@ -148,6 +150,77 @@ TEST(ScanTerrain, FewPointsAreInterpolatedAndSaidToBeFew) {
   const ScannedTerrain ground = terrain_from_scan(slope(40.0), extent, 0.05);
   EXPECT_EQ(codes(ground), Codes{"sparse_terrain"});
   EXPECT_NEAR(height_at(ground.terrain.bank, 4.0, 0.3), 0.4, 0.02);
+}
+
+/// A layer above the slope on a part of it, as of a second scan whose pose differs.
+Scan two_layers(double apart, double up_to_x, double share = 0.5) {
+  Scan scan = slope(1000.0);
+  auto both = std::make_shared<Cloud>(*scan.clouds.front());
+  Random random(11);
+  const double upper = 1000.0 * share / (1.0 - share) * up_to_x * 5.0;
+  for (double i = 0.0; i < upper; i += 1.0) {
+    const double x = random.uniform(0.0, up_to_x);
+    both->points.emplace_back(x, random.uniform(-2.5, 2.5), 0.1 * x + apart);
+  }
+  for (Eigen::Vector3d& p : both->points) p.z() += 0.005 * random.normal();
+  both->width = both->points.size();
+  scan.clouds = {both};
+  return scan;
+}
+
+TEST(ScanTerrain, TwoSurfacesAreToldAndEndTrust) {
+  for (const double apart : {0.15, 0.25, 0.4}) {
+    for (const double share : {0.3, 0.5, 0.7}) {
+      const ScannedTerrain all = terrain_from_scan(two_layers(apart, 9.0, share), extent, 0.05);
+      ASSERT_EQ(codes(all), Codes{"two_surfaces"}) << apart << ' ' << share;
+      EXPECT_TRUE(all.warnings[0].ends_trust) << all.warnings[0].message << share;
+      ASSERT_EQ(all.terrain.doubts.size(), 1U);
+    }
+    EXPECT_EQ(codes(terrain_from_scan(two_layers(apart, 3.0), extent, 0.05)), Codes{"two_surfaces"})
+        << "on a quarter of the ground, " << apart;
+  }
+  EXPECT_EQ(codes(terrain_from_scan(two_layers(0.0, 9.0), extent, 0.05)), Codes{});
+  EXPECT_EQ(codes(terrain_from_scan(two_layers(0.01, 9.0), extent, 0.05)), Codes{});
+}
+
+TEST(ScanTerrain, TwoSurfacesEndTheTrustOfAPlan) {
+  const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
+  Terrain ground = level_planning_ground(zx120(), 0.1);
+  EXPECT_TRUE(plan_dig(zx120(), loam, GroundDensity{40.0}, ground).trustworthy);
+  ground.doubts = terrain_from_scan(two_layers(0.2, 9.0), extent, 0.05).warnings;
+  const DigPlan plan = plan_dig(zx120(), loam, GroundDensity{40.0}, ground);
+  EXPECT_FALSE(plan.trustworthy);
+  ASSERT_FALSE(plan.warnings.empty());
+  EXPECT_EQ(plan.warnings.front().code, WarningCode::two_surfaces);
+}
+
+/// Some of the points at one height, which may be on no list.
+Scan with_no_data(double height, double share) {
+  Scan scan = slope(2000.0);
+  auto cloud = std::make_shared<Cloud>(*scan.clouds.front());
+  const auto every = static_cast<std::size_t>(std::lround(1.0 / share));
+  for (std::size_t i = 0; i < cloud->points.size(); i += every) cloud->points[i].z() = height;
+  scan.clouds = {cloud};
+  return scan;
+}
+
+TEST(ScanTerrain, PointsWithoutDataAreNamedAndLeftOut) {
+  for (const double height : {-9999.0, -10000.0, 65.535, -32.768, 1234.5}) {
+    for (const double share : {0.05, 0.1, 0.34}) {
+      const ScannedTerrain ground = terrain_from_scan(with_no_data(height, share), extent, 0.05);
+      ASSERT_EQ(codes(ground), Codes{"outliers"}) << height << ' ' << share;
+      const std::string& message = ground.warnings[0].message;
+      EXPECT_NE(message.find("have z = " + number_text(height) + ", which stands for no data"),
+                std::string::npos)
+          << message;
+      EXPECT_FALSE(ground.warnings[0].ends_trust);
+      EXPECT_NEAR(height_at(ground.terrain.bank, 4.0, 0.3), 0.4, 0.002);
+    }
+  }
+  const ScannedTerrain few = terrain_from_scan(with_no_data(-9999.0, 0.02), extent, 0.05);
+  EXPECT_EQ(codes(few), Codes{"outliers"}) << "a known value needs few points";
+  EXPECT_NE(few.warnings[0].message.find("% of the points, about 1"), std::string::npos)
+      << few.warnings[0].message;
 }
 
 TEST(ScanTerrain, NarrowGapsAreFilledAndWideOnesStayUnknown) {

@@ -8,6 +8,7 @@
 #include <excavplan/scans/scan_terrain.hpp>
 
 #include "base/text.hpp"
+#include "ground/obstacles.hpp"
 #include "inputs/found_pose.hpp"
 #include "inputs/scans.hpp"
 #include "inputs/unit_inputs.hpp"
@@ -95,7 +96,19 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
     if (!terrain.cloud) return Site{undisturbed(flat_ground(extent, cell_size)), {}};
     ScannedTerrain seen = scanned(
         terrain, [&](const Scan& scan) { return terrain_from_scan(scan, extent, cell_size); });
-    return Site{std::move(seen.terrain), std::move(seen.warnings)};
+    return Site{with_obstacles(seen.terrain), std::move(seen.warnings)};
+  });
+}
+
+void add_earlier_obstacles(const TerrainInput& earlier, const Rectangle& extent, Terrain& ground) {
+  Terrain present = ground;
+  ground = scanned(earlier, [&](const Scan& scan) {
+    try {
+      return with_earlier_obstacles(
+          present, terrain_from_scan(scan, extent, present.bank.cell_size).terrain);
+    } catch (const FrameError&) {  // it shows no ground there
+      return present;
+    }
   });
 }
 

@@ -50,11 +50,15 @@ Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine);
 /// @throws Error as make_site()
 HeightMap make_standing_ground(const TerrainInput& terrain, const Machine& machine);
 
-/// The ground of `extent` on cells of this size: terrain_from_scan() if a cloud is given, else
-/// level.
+/// The ground of `extent` on cells of this size: terrain_from_scan() with all obstacles, as
+/// plan_dig() digs it, if a cloud is given, else level.
 ///
 /// @throws Error (bad_file) if the cloud cannot be read or holds hardly a point in the extent
 /// @throws Error (bad_input) if a frame or a unit is given without a cloud
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size);
+
+/// with_earlier_obstacles() of the cloud of `earlier`, if it shows the ground of make_site().
+/// @throws Error as make_site()
+void add_earlier_obstacles(const TerrainInput& earlier, const Rectangle& extent, Terrain& ground);
 
 }  // namespace excavplan::tools

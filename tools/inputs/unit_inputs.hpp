@@ -13,7 +13,8 @@ namespace excavplan::tools {
 void declare_unit(Arguments& arguments, const std::string& name, std::string& unit,
                   const std::string& help);
 
-/// --depth-unit: length of a count in depth images, at most 1 cm: of a bare 0.25 the unit is missing.
+/// --depth-unit: length of a count in depth images, at most 1 cm: of a bare 0.25 the unit is
+/// missing.
 void declare_depth_unit(Arguments& arguments, std::optional<double>& depth_unit,
                         const std::string& help);
 

@@ -127,8 +127,6 @@ const OptionNames option_names = {{"joints at the start", joints_option},
                                   {"MotionOptions::rate", "--rate"},
                                   {"MotionOptions::max_jerk", "--max-jerk"}};
 
-bool leaves_the_dig(const MotionInputs& inputs) { return inputs.joints || inputs.whole_cycle; }
-
 /// Without points, and a warning, where the ground is in the way: the plan is worth having still.
 Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   auto motion = plan_motion(
@@ -143,6 +141,14 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   none.warnings = {{WarningCode::no_motion,
                     "the plan has no motion: the ground is in the way: " + stop->message}};
   return none;
+}
+
+void add(const std::vector<Warning>& warnings, Outcome& outcome) {
+  for (const Warning& warning : warnings) {
+    outcome.warnings.push_back(warning);
+    outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
+  }
+  outcome.json["trustworthy"] = outcome.trustworthy;
 }
 
 TerrainInput surroundings_of(const MotionInputs& inputs, const TerrainInput& terrain) {
@@ -211,7 +217,7 @@ MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
     ground.pose = Eigen::Isometry3d(frame_named("--terrain-frame", *terrain.frame)).inverse();
   }
   if (!terrain.attitude.is_level()) ground.pose.rotate(terrain.attitude.to_site());
-  if (!inputs.file || !leaves_the_dig(inputs)) return ground;
+  if (!terrain.cloud) return ground;
   ground.ground = make_swing_ground(terrain, machine);
   if (!inputs.surroundings) return ground;
   ScannedTerrain both = with_surroundings(
@@ -219,6 +225,15 @@ MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
   ground.ground = std::move(both.terrain);
   ground.warnings = std::move(both.warnings);
   return ground;
+}
+
+Site dig_site(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
+              double cell_size) {
+  Site site = make_site(terrain, planning_extent(machine), cell_size);
+  if (inputs.surroundings && terrain.cloud) {
+    add_earlier_obstacles(surroundings_of(inputs, terrain), planning_extent(machine), site.ground);
+  }
+  return site;
 }
 
 void set_standing(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
@@ -239,16 +254,18 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
   const char* on = planned.ground.is_scanned ? "as scanned" : "level, clear ground assumed";
   outcome.json["ground"] = on;
   if (planned.plan.dig) outcome.lines.push_back(std::string("ground       ") + on);
+  add(planned.ground.warnings, outcome);
+  if (planned.ground.is_scanned) {
+    const auto at_dump = naming_options(option_names, [&] {
+      return check_dump_place(planned.machine, planned.ground.ground, planned.plan,
+                              planned.objective);
+    });
+    if (at_dump) add({*at_dump}, outcome);
+  }
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =
       naming_options(option_names, [&] { return motion_of(inputs, planned); });
-  for (const auto& warnings : {planned.ground.warnings, motion.warnings}) {
-    for (const Warning& warning : warnings) {
-      outcome.warnings.push_back(warning);
-      outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
-    }
-  }
-  outcome.json["trustworthy"] = outcome.trustworthy;
+  add(motion.warnings, outcome);
   const Format& format = format_of(inputs);
   const std::string text = format.text(motion);
   if (*inputs.file == "-") {

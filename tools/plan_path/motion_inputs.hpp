@@ -43,6 +43,11 @@ struct MotionGround {
 MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
                            const TerrainInput& terrain, const CycleOptions& cycle);
 
+/// The ground to dig on: make_site() over planning_extent(), with what stood on it by
+/// --surroundings unless it has gone. @throws Error as make_site()
+Site dig_site(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
+              double cell_size);
+
 /// How the machine stands, and with --terrain on what: PlanOptions::attitude and standing_on, which
 /// is of both clouds as well.
 void set_standing(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,

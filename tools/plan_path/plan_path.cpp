@@ -107,8 +107,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   const GroundDensity density = density_of(inputs.density);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const Site site = make_site(inputs.terrain, planning_extent(machine),
-                              inputs.cell_size.value_or(usual_cell(machine)));
+  const Site site = dig_site(inputs.motion, machine, inputs.terrain,
+                             inputs.cell_size.value_or(usual_cell(machine)));
   PlanOptions options = options_of(inputs, machine, soil, console);
   const auto area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
   set_standing(inputs.motion, machine, inputs.terrain, options);
@@ -121,9 +121,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
   outcome.warnings = plan_warnings(plan, inputs.density, scanned);
-  for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), site.warnings}) {
-    outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
-  }
+  const auto of_goal = goal_warnings(inputs.dig_search.goal, {machine});
+  outcome.warnings.insert(outcome.warnings.begin(), of_goal.begin(), of_goal.end());
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
   outcome.json = plan_json(plan, density, options.search.objective);
   outcome.json.update({{"trustworthy", outcome.trustworthy},

@@ -83,6 +83,7 @@ enum class WarningCode {
   not_standing,
   object_on_soil,
   object_taken_out,
+  obstacle_at_dump,
   obstacle_in_strip,
   optimum_at_bound,
   options_ignored,

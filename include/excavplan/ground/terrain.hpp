@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
+#include <excavplan/base/warning.hpp>
 #include <excavplan/ground/height_map.hpp>
 
 /// @file
@@ -27,6 +30,15 @@ struct Terrain {
   /// a wire [m]; NaN where nothing does. The ground below is not seen: `bank` is NaN. A machine
   /// keeps clear of all that is below the top. Empty: nothing anywhere.
   Eigen::ArrayXXd obstacles{};
+  /// Highest return of each of these, which may be lower than the top that is counted [m]. Empty:
+  /// the tops are returns.
+  Eigen::ArrayXXd obstacle_returns{};
+  /// Of obstacles so thin, wires and posts, that rays pass beside them: that ground is seen in
+  /// their place later does not tell that they have gone. Empty: none.
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> thin_obstacles{};
+  /// What is doubtful about the ground, as who made it knows (terrain_from_scan()): becomes part of
+  /// every plan on it.
+  std::vector<Warning> doubts{};
 
   /// bank + loose. @throws Error (bad_input) if they differ in size
   HeightMap surface() const;

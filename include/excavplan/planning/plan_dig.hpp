@@ -106,12 +106,12 @@ struct DigPlan {
 
   bool stopped = false;     ///< the search was cancelled; the dig is the best until then
   bool trustworthy = true;  ///< false after a warning marked * below
-  /// density_as_fraction *, density_not_trustworthy *, law_of_other_soil *, library_unreadable (the
-  /// search began with nothing), simulator_failed (at some digs of the search, which were left
-  /// out), min_fill_relaxed (no dig was found that fills the bucket as asked),
-  /// those of standing_ground() *, obstacle_in_strip (something stands there, which the dig keeps
-  /// clear of), slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked
-  /// (the trajectory begins on the ground).
+  /// Terrain::doubts, density_as_fraction *, density_not_trustworthy *, law_of_other_soil *,
+  /// library_unreadable (the search began with nothing), simulator_failed (at some digs of the
+  /// search, which were left out), min_fill_relaxed (no dig was found that fills the bucket as
+  /// asked), those of standing_ground() *, obstacle_in_strip (something stands there, which the dig
+  /// keeps clear of), slope_outside_library *, ground_unlike_library *, may_stall *,
+  /// approach_blocked (the trajectory begins on the ground).
   std::vector<Warning> warnings;
 
   /// Why there is no dig: none can be done, or none is worth making, with a payload of at least a

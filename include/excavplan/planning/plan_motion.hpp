@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include <excavplan/planning/cycle_motion.hpp>
@@ -24,5 +25,13 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
 std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const DigPlan& plan,
                                                  const CycleWayOptions& way = {},
                                                  const MotionOptions& motion = {});
+
+/// Code `obstacle_at_dump`: below the bucket where a planned dig dumps something stands whose
+/// highest return is above the dump height. A truck, whose bed is lower, may stand there.
+/// @param ground  as of plan_motion()
+/// @return nothing if the plan has no dig or the machine does not state its swing
+/// @throws Error (bad_input) as require_terrain()
+std::optional<Warning> check_dump_place(const Machine& machine, const Terrain& ground,
+                                        const DigPlan& plan, const CycleOptions& cycle = {});
 
 }  // namespace excavplan
