@@ -76,6 +76,36 @@ TEST_F(Tools, InspectCloudReadsLas) {
   EXPECT_EQ(result.at("pose"), nullptr);
 }
 
+TEST_F(Tools, InspectCloudGivesTheVolumeOfALoneHeap) {
+  std::string rows;
+  for (int i = 0; i < 100; ++i) {
+    for (int j = 0; j < 100; ++j) {
+      const double x = 3.0 + 0.04 * i, y = -2.0 + 0.04 * j;
+      const double cone = std::max(0.0, 0.5 * (1.0 - std::hypot(x - 5.0, y) / 0.8));
+      rows += std::to_string(x) + " " + std::to_string(y) + " " +
+              std::to_string(cone + 0.002 * ((i * 7 + j * 13) % 5 - 2)) + "\n";
+    }
+  }
+  const std::string heap = folder.write("heap.xyz", rows);
+  const json result =
+      answer("inspect-cloud", {heap, "--volume", "3.8,-1.2,6.2,-1.2,6.2,1.2,3.8,1.2"});
+  const double truth = 3.14159265 * 0.8 * 0.8 * 0.5 / 3.0;
+  EXPECT_NEAR(number(result, "/volume/above_m3"), truth, 0.005);
+  EXPECT_LT(number(result, "/volume/below_m3"), 0.005);
+  EXPECT_GT(number(result, "/volume/above_sd_m3"), 0.0);
+  EXPECT_GT(number(result, "/volume/below_sd_m3"), 0.0);
+  EXPECT_NEAR(number(result, "/volume/area_m2"), 5.76, 1e-9);
+}
+
+TEST_F(BadInput, VolumesOverWhatIsNoPolygonAreRefused) {
+  const std::string before = shipped("quickstart/before.pcd");
+  refused(2, "is not X1,Y1,X2,Y2,X3,Y3", "inspect-cloud", {before, "--volume", "1,2,3,4"});
+  refused(2, "is not X1,Y1,X2,Y2,X3,Y3", "inspect-cloud", {before, "--volume", "1,2,3,4,5,6,7"});
+  refused(2, "--volume: area of the polygon is 0", "inspect-cloud",
+          {before, "--volume", "1,1,2,2,3,3"});
+  refused(3, "same frame", "inspect-cloud", {before, "--volume", "101,1,102,1,102,2"});
+}
+
 /// A flat place seen by a lidar 2 m above it that leans forward by a tenth.
 std::string leaning_scan(const TemporaryFolder& folder) {
   std::string rows;

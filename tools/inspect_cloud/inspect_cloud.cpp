@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <excavplan/scans/scan_surface.hpp>
 
@@ -9,6 +11,7 @@
 #include "inputs/recordings.hpp"
 #include "inputs/unit_inputs.hpp"
 #include "inspect_cloud/cloud_lines.hpp"
+#include "inspect_cloud/polygon_input.hpp"
 #include "inspect_cloud/recording_listing.hpp"
 #include "results/scan_results.hpp"
 
@@ -23,6 +26,7 @@ struct Inputs {
   PoseInputs pose;
   std::optional<std::string> out;
   bool ascii = false;
+  std::vector<Eigen::Vector2d> polygon;  ///< of --volume; empty: none
 };
 
 const About about = {
@@ -35,6 +39,7 @@ const About about = {
       "the points of two seconds of a recording, in the frame map"},
      {"inspect-cloud scan.xyz --out scan.ply", "the summary, and the points as binary PLY"},
      {"inspect-cloud scan.pcd --frame scan_frame.txt --out site.pcd", "into the site frame"},
+     {"inspect-cloud scan.pcd --volume 4,-1,7,-1,7,2,4,2", "of the pile or hole in this polygon"},
      {"inspect-cloud scan.pcd --level --pose-out pose.txt --out level.pcd",
       "z up by the ground plane"},
      {"inspect-cloud scan.pcd --points markers.csv --out site.pcd",
@@ -47,6 +52,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_recorded(arguments, inputs.recorded);
   declare_pose(arguments, inputs.pose, "scan_x_m,scan_y_m,scan_z_m");
   arguments.exclude("frame", {"pose", "level", "points"});
+  declare_volume(arguments, inputs.polygon);
   arguments.output("out", inputs.out, "write the cloud here: " + cloud_endings());
   arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text, with full precision");
 }
@@ -58,7 +64,7 @@ void refuse_recorded(const RecordedOptions& options) {
 }
 
 Outcome inspect(const Inputs& inputs) {
-  if (!inputs.out && !inputs.pose.pose_out) {
+  if (!inputs.out && !inputs.pose.pose_out && inputs.polygon.empty()) {
     if (auto listing = recording_listing(inputs.file)) {
       if (!inputs.recorded.tf_frame.empty())
         usage_error("--tf-frame needs a topic: FILE:TOPIC@TIME+SPAN");
@@ -102,9 +108,9 @@ Outcome inspect(const Inputs& inputs) {
     outcome.lines.insert(outcome.lines.begin(), recorded->line);
     outcome.warnings = recorded->scan.warnings;
   }
-  for (const Warning& each : cloud_warnings(inputs.file, summary, scan.unit)) {
-    outcome.warnings.push_back(each);
-  }
+  const auto of_cloud = cloud_warnings(inputs.file, summary, scan.unit);
+  outcome.warnings.insert(outcome.warnings.end(), of_cloud.begin(), of_cloud.end());
+  add_volume(scan, inputs.polygon, outcome);
   return outcome;
 }
 
