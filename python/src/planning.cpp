@@ -278,6 +278,12 @@ void bind_plan(py::module_& module) {
       .def_readonly("warnings", &DigPlan::warnings)
       .def_readonly("reason", &DigPlan::reason, "Why there is no dig; empty if there is one.")
       .def_readonly("nearest", &DigPlan::nearest, "If a search found no dig.")
+      .def_property_readonly(
+          "attitude",
+          [](const DigPlan& plan) {
+            return Eigen::Vector2d(plan.attitude.roll, plan.attitude.pitch);
+          },
+          "(roll, pitch) of the machine that it was planned for [rad].")
       .def(
           "to_json",
           [](const DigPlan& plan, const GroundDensity& density,
@@ -295,7 +301,8 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
                 const std::optional<Terrain>& terrain, const std::string& method,
                 const std::optional<PathLibrary>& library,
                 const std::optional<SearchOptionsInPython>& search, const py::object& simulator,
-                double speed_fraction, std::optional<double> cell_size) {
+                double speed_fraction, std::optional<double> cell_size,
+                const Eigen::Vector2d& attitude, const std::optional<HeightMap>& standing_on) {
   const auto own = std::make_shared<Call>();
   PlanOptions options;
   options.method = of_word<PlanMethod>(
@@ -305,6 +312,8 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
   options.simulator = simulator_kind(simulator, own);
   options.trajectory.speed_fraction = speed_fraction;
   options.cell_size = cell_size;
+  options.attitude = {attitude.x(), attitude.y()};
+  options.standing_on = standing_on;
   return own->run([&] {
     return terrain ? plan_dig(machine, soil, density, *terrain, options)
                    : plan_dig(machine, soil, density, options);
@@ -390,12 +399,15 @@ void bind_plan_dig(py::module_& module) {
       arg("terrain") = py::none(), py::kw_only(), arg("method") = "library",
       arg("library") = py::none(), arg("search") = py::none(), arg("simulator") = py::none(),
       arg("speed_fraction") = TrajectoryOptions{}.speed_fraction, arg("cell_size") = py::none(),
+      arg("attitude") = Eigen::Vector2d::Zero().eval(), arg("standing_on") = py::none(),
       "Plans the next dig on the ground given, or on level ground, as plan-path does.\n\n"
       "density: a number [%] or a GroundDensity, whose standard deviation counts; terrain:\n"
       "Terrain or HeightMap in the site frame; method: 'library' or 'search'; library: else\n"
       "the shipped one; search: DigSearchOptions; simulator: word or class; speed_fraction:\n"
       "of the limits of the machine; cell_size: of level ground, else as the machine\n"
-      "needs it [m].");
+      "needs it [m]; attitude: (roll, pitch) of the machine, left side up and front down,\n"
+      "the terrain being in its frame [rad]; standing_on: ground under and about the\n"
+      "tracks, of standing_ground_from_scan(), else as far as the terrain goes.");
 }
 
 }  // namespace excavplan::python

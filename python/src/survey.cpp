@@ -192,6 +192,14 @@ void bind_scans(py::module_& module) {
       arg("scan"), arg("machine"),
       "The ground of swing_extent(), which plan_motion() keeps clear of: known between points\n"
       "at most 0.25 m apart, and not between points more than 0.5 m apart; with obstacles.");
+  module.def(
+      "standing_ground_from_scan",
+      [](const py::object& scan, const Machine& machine) {
+        const Scan source = scan_of(scan, "the scan");
+        return call([&] { return standing_ground_from_scan(source, machine); });
+      },
+      arg("scan"), arg("machine"),
+      "The ground that the machine stands on, to 6 m about its tracks, for plan_dig().");
   module.def("with_surroundings", &with_surroundings, arg("present"), arg("earlier"),
              "The present ground, and where it is unknown an earlier one, both of\n"
              "swing_terrain_from_scan(). Warning surroundings_differ if one is in a wrong frame.");

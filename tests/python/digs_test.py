@@ -80,6 +80,25 @@ class Motions(unittest.TestCase):
         self.assertEqual(both.warnings, [])
         self.assertEqual(ex.plan_motion(MACHINE, plan, both.terrain, whole_cycle=True).warnings, [])
 
+    def test_the_attitude_is_that_of_the_tool(self):
+        told = result_of("plan-path", "--density", 40, "--attitude=0.06,-0.03")
+        plan = ex.plan_dig(MACHINE, LOAM, 40, attitude=(0.06, -0.03))
+        self.assertEqual(plan.dig.energy / 1e3, told["energy_kj"])
+        self.assertEqual(list(plan.attitude), [0.06, -0.03])
+        self.assertNotEqual(plan.dig.energy, ex.plan_dig(MACHINE, LOAM, 40).dig.energy)
+        self.assertEqual(plan.trustworthy, told["trustworthy"])
+        with self.assertRaises(ValueError):
+            ex.plan_dig(MACHINE, LOAM, 40, attitude=(3.0, 0.0))
+
+    def test_the_ground_that_the_machine_stands_on(self):
+        places = [0.1 * i - 9.8 for i in range(197)]
+        for height, code in ((0.0, None), (-0.5, "ground_below_tracks")):
+            around = ex.Cloud([(x, y, height) for x in places for y in places])
+            standing = ex.standing_ground_from_scan(around, MACHINE)
+            plan = ex.plan_dig(MACHINE, LOAM, 40, standing_on=standing)
+            self.assertEqual(plan.trustworthy, code is None)
+            self.assertEqual([each.code for each in plan.warnings], [code] if code else [])
+
     def test_a_motion_is_that_of_the_tool(self):
         joints = "-0.6,1.6,0.5,0.7"
         with tempfile.TemporaryDirectory() as folder:
