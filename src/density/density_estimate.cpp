@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -226,8 +227,33 @@ Warning warning_of(const BlockReport& report) {
   return {WarningCode::blocks, message + ": the density is not trustworthy"};
 }
 
+/// Says by warnings that end trust why there is no density, or one beyond the range of the law.
+void name_causes(DensityEstimate& estimate) {
+  if (estimate.trustworthy) return;
+  if (estimate.density && estimate.density->trustworthy) return;  // what ended it has said so
+  const std::set<WarningCode> causes =
+      estimate.bulking
+          ? std::set<WarningCode>{WarningCode::density_above_range,
+                                  WarningCode::density_below_range}
+          : std::set<WarningCode>{WarningCode::no_hole_found, WarningCode::no_dumped_soil,
+                                  WarningCode::zone_unseen};
+  bool is_named = false;
+  for (Warning& warning : estimate.warnings) {
+    if (causes.count(warning.code) > 0) warning.ends_trust = true;
+    is_named = is_named || warning.ends_trust;
+  }
+  if (is_named) return;
+  estimate.warnings.emplace_back(WarningCode::density_not_trustworthy,
+                                 estimate.bulking ? "the density is farther beyond 0 .. 100 % than "
+                                                    "its error explains"
+                                                  : "a volume is not known, so that there is no "
+                                                    "bulking factor",
+                                 true);
+}
+
 /// Marks the estimate as not trustworthy where the scans do not support it.
 void judge_scans(DensityEstimate& estimate) {
+  name_causes(estimate);
   if (estimate.blocks.blocks) {
     estimate.warnings.push_back(warning_of(estimate.blocks));
     estimate.trustworthy = false;

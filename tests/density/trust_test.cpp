@@ -121,6 +121,36 @@ TEST(Trust, IsKeptOverALevelFloor) {
   EXPECT_EQ(found.distrusted_right, 0);
 }
 
+/// Why a result is not to be trusted is told by what ends trust, and by that alone.
+void expect_reasons(const DensityEstimate& estimate, const std::string& what) {
+  const bool ends = std::any_of(estimate.warnings.begin(), estimate.warnings.end(),
+                                [](const Warning& warning) { return warning.ends_trust; });
+  EXPECT_EQ(estimate.trustworthy, !ends) << what;
+}
+
+TEST(Trust, IsEndedByAWarningThatSaysWhy) {
+  const std::vector<Family>& all = scenes::families();
+  std::vector<std::optional<DensityEstimate>> estimates(2 * all.size());
+  DensityOptions options;
+  options.threads = 1;
+  parallel_for(estimates.size(), 0, [&](std::size_t i) {
+    const SiteScene scene = scenes::site_scene(all[i / 2], 9001 + i, 20000);
+    DigScans scans = scenes::scans_of(scene, i);
+    if (i % 2 == 1 && i % 3 == 0) scans.after = scans.before;  // no hole
+    try {
+      estimates[i] = estimate_density(scans, paper_law(), options);
+    } catch (const Error&) {  // refused
+    }
+  });
+  int untrusted = 0;
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    if (!estimates[i]) continue;
+    expect_reasons(*estimates[i], all[i / 2].name);
+    untrusted += estimates[i]->trustworthy ? 0 : 1;
+  }
+  EXPECT_GT(untrusted, 10);
+}
+
 TEST(StrewnSoil, IsInTheInterval) {
   const Outcome found = surveyed({"strewn-layer", "strewn-crumbs"}, 4);
   EXPECT_EQ(found.answered, found.surveys);
