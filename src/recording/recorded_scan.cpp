@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -190,6 +191,19 @@ std::vector<Eigen::Vector3d> points_of_depths(const DepthMessage& image, const P
   return points;
 }
 
+/// Squares of the plan in which points lie.
+using SeenPlaces = std::set<std::pair<double, double>>;
+constexpr double place_size = 0.5;  // ours [m]
+constexpr double alike = 0.9;       // ours: of all places, those of a message that shows all
+SeenPlaces places_of(const std::vector<Eigen::Vector3d>& points) {
+  SeenPlaces places;
+  for (const Eigen::Vector3d& point : points) {
+    if (!point.allFinite()) continue;
+    places.emplace(std::floor(point.x() / place_size), std::floor(point.y() / place_size));
+  }
+  return places;
+}
+
 /// Reads the points of one query.
 class ScanReader {
  public:
@@ -365,7 +379,7 @@ class ScanReader {
                           recording_.path() + ": " + recording_.skipped().text() + missing,
                           !missing.empty());
   }
-  /// What may be missing of the scan; empty: nothing. Of frames that are averaged each shows all.
+  /// What may be missing of the scan; empty: nothing, as where each message shows all of it.
   std::string missing_of(ScanMerge merge) const {
     constexpr std::int64_t soon = one_second;  // ours
     const auto lost = recording_.skipped().first_lost(topic_.name, asked_);
@@ -374,7 +388,8 @@ class ScanReader {
              "was "
              "recorded more than a second later";
     }
-    if (!lost || merge != ScanMerge::joined) return "";
+    const bool is_whole = merge == ScanMerge::averaged || shows_all_;
+    if (!lost || is_whole || asked_.to == first().time) return "";
     return "; messages of " + topic_.name +
            " in the span asked for may be among what is lost, and "
            "what they saw be missing";
@@ -503,13 +518,24 @@ class ScanReader {
   void join(RecordedScan& scan) {
     scan.merge = ScanMerge::joined;
     std::vector<Eigen::Vector3d>& all = scan.cloud.points;
+    const bool is_damaged = recording_.skipped().count() > 0;
+    std::vector<std::size_t> seen;  // places of each message
+    SeenPlaces together;
     each_message([&](const MessageHead& head, std::vector<Eigen::Vector3d> points) {
       put_in_target(head, points);
+      if (is_damaged) {
+        SeenPlaces places = places_of(points);
+        seen.push_back(places.size());
+        together.merge(places);
+      }
       std::copy_if(points.begin(), points.end(), std::back_inserter(all),
                    [](const Eigen::Vector3d& point) { return point.allFinite(); });
       return true;
     });
     scan.cloud.width = all.size();
+    if (seen.size() < 2) return;
+    const std::size_t least = *std::min_element(seen.begin(), seen.end());
+    shows_all_ = static_cast<double>(least) >= alike * static_cast<double>(together.size());
   }
   void put_in_target(const MessageHead& head, std::vector<Eigen::Vector3d>& points) const {
     if (target_.empty()) return;
@@ -525,6 +551,7 @@ class ScanReader {
   TimeRange asked_;  ///< times of messages that were asked for
   std::optional<double> depth_unit_;
   std::optional<Pinhole> pinhole_;  ///< of a depth image
+  bool shows_all_ = false;          ///< each of the messages that are joined
   bool is_counted_ = false;
   double middle_depth_ = 0.0;  ///< of the first image that saw something [m]
 };

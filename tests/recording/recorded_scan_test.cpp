@@ -769,6 +769,24 @@ TEST(RecordedScan, WhatIsLostOfItsTopicAndTimesAloneEndsTrust) {
   EXPECT_TRUE(doubts({{}, {"/points"}}, 0.5, 1.0, 1)) << "at a time that is not known";
 }
 
+/// As of a lidar that stands, unlike that of one that turns.
+TEST(RecordedScan, WhereEachMessageShowsAllNoneIsMissed) {
+  for (const double moved : {0.0, 1.0}) {
+    RecordingInMemory recording = recording_from_zero();
+    for (int i = 0; i < 5; ++i) {
+      Points seen;
+      for (int k = 0; k < 200 + i; ++k)
+        seen.emplace_back(0.1 * (k % 100) + moved * i, 0.2, 0.01 * i);
+      add_cloud(recording, i * 100 * ms, seen);
+    }
+    recording.skipped().add("run: a part", {{epoch + 150 * ms, epoch + 150 * ms}, {"/points"}});
+    const RecordedScan scan = read_recorded_scan(recording, query_of("/points", 0.0, 1.0));
+    ASSERT_EQ(scan.merge, ScanMerge::joined);
+    ASSERT_EQ(scan.warnings.size(), 1U);
+    EXPECT_EQ(scan.warnings[0].ends_trust, moved > 0.0);
+  }
+}
+
 /// Every message of a scan with depths, transforms and several frames, changed at random.
 TEST(RecordedScan, MutatedRecordingsEndInAScanOrAnError) {
   std::mt19937 random(11);
