@@ -248,9 +248,11 @@ class PolygonGround {
   double share_of(Cell at) const {
     constexpr int along = 5;
     int inside = 0;
-    for (int i = 0; i < along * along; ++i) {
-      const Vector2d off((i % along + 0.5) / along - 0.5, (i / along + 0.5) / along - 0.5);
-      if (contains(polygon_, place(at) + surface_.height.cell_size * off)) ++inside;
+    for (int x = 0; x < along; ++x) {
+      for (int y = 0; y < along; ++y) {
+        const Vector2d off((x + 0.5) / along - 0.5, (y + 0.5) / along - 0.5);
+        if (contains(polygon_, place(at) + surface_.height.cell_size * off)) ++inside;
+      }
     }
     return static_cast<double>(inside) / (along * along);
   }
