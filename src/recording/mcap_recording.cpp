@@ -339,9 +339,9 @@ void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
       index.fail("a message index of channel " + std::to_string(id),
                  "one of channel " + std::to_string(channels_[number].id));
     }
+    const Loss loss = {chunks_[chunk].times(), {channels_[number].topic}};
     for (ByteReader entries = index.part("entries of a message index"); entries.left() > 0;) {
       ByteReader entry = entries.part(16, "entry of a message index");
-      const Loss loss = {chunks_[chunk].times(), {channels_[number].topic}};
       skipped_.guard(loss, [&] {
         const std::int64_t time = entry.nanoseconds("time of a message");
         places.push_back({time, entry.u64("offset of a message"), chunk, number});

@@ -87,7 +87,7 @@ class Motions(unittest.TestCase):
         self.assertEqual(list(plan.attitude), [0.06, -0.03])
         self.assertNotEqual(plan.dig.energy, ex.plan_dig(MACHINE, LOAM, 40).dig.energy)
         self.assertEqual(plan.trustworthy, told["trustworthy"])
-        with self.assertRaises(ValueError):
+        with self.assertRaises(ex.Error):
             ex.plan_dig(MACHINE, LOAM, 40, attitude=(3.0, 0.0))
 
     def test_the_ground_that_the_machine_stands_on(self):
