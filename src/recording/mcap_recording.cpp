@@ -321,9 +321,7 @@ void McapRecording::require_once_each(RecordedChunk& chunk, const ByteReader& re
 
 void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
                          std::vector<MessagePlace>& places) const {
-  for (const auto& index_of_channel : chunks_[chunk].channels) {
-    const auto number = index_of_channel.first;
-    const auto offset = index_of_channel.second;
+  for (const auto& [number, offset] : chunks_[chunk].channels) {
     if (!wanted[number]) continue;
     const std::uint64_t end = chunks_[chunk].offset + chunks_[chunk].length;
     const std::uint64_t length =
@@ -342,9 +340,9 @@ void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
     const Loss loss = {chunks_[chunk].times(), {channels_[number].topic}};
     for (ByteReader entries = index.part("entries of a message index"); entries.left() > 0;) {
       ByteReader entry = entries.part(16, "entry of a message index");
-      skipped_.guard(loss, [&] {
+      skipped_.guard(loss, [&, channel = number] {
         const std::int64_t time = entry.nanoseconds("time of a message");
-        places.push_back({time, entry.u64("offset of a message"), chunk, number});
+        places.push_back({time, entry.u64("offset of a message"), chunk, channel});
       });
     }
   }
