@@ -11,6 +11,24 @@
 
 namespace excavplan {
 
+namespace {
+
+/// The 95 % interval of a mixture; one that reaches into a part takes all of its interval, for the
+/// weight of a reading is not known so well that it could be cut in two.
+std::array<double, 2> interval_of(const std::vector<NormalPart>& parts) {
+  const double low = quantile_of(parts, 0.025);
+  const double high = quantile_of(parts, 0.975);
+  std::array<double, 2> interval = {low, high};
+  for (const NormalPart& part : parts) {
+    const double reach = two_sided_95_percent * part.sd;
+    if (std::abs(low - part.mean) < reach) interval[0] = std::min(interval[0], part.mean - reach);
+    if (std::abs(high - part.mean) < reach) interval[1] = std::max(interval[1], part.mean + reach);
+  }
+  return interval;
+}
+
+}  // namespace
+
 std::optional<Measured> bulking_factor(const VolumeChange& change) {
   const bool volume_is_missing =
       std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& warning) {
@@ -71,7 +89,7 @@ std::optional<std::array<double, 2>> bulking_interval(const VolumeChange& change
     return std::array<double, 2>{k->value - two_sided_95_percent * k->sd,
                                  k->value + two_sided_95_percent * k->sd};
   }
-  return std::array<double, 2>{quantile_of(parts, 0.025), quantile_of(parts, 0.975)};
+  return interval_of(parts);
 }
 
 double free_of_fallback(double bulking_measured, double fallback_fraction) {

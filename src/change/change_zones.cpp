@@ -130,10 +130,7 @@ class ChangeFinder {
       if (before.size() > 0 && (before == found_.zone).all()) break;
       learn_from_stable_ground();
     }
-    for (const Eigen::Index radius : layer_windows) {
-      if (find_layers(radius)) learn_from_stable_ground();
-    }
-    found_.zone_is_layer.resize(found_.zone_is_cut.size(), false);
+    find_layers();
     found_.difference -= found_.datum;
     found_.smooth_sd = smooth_sd_;
     find_residual();
@@ -279,44 +276,90 @@ class ChangeFinder {
   }
 
   /// Soil strewn so thin that only the mean of a larger window tells it from noise: crumbs, layers,
-  /// what wheels carry. Its zones are those of stable ground whose mean over the window rises above
-  /// the scatter of such means, correlated errors included. True if there are some.
-  bool find_layers(Eigen::Index radius) {
+  /// what wheels carry. What was taken as soil raises the mean of the ground that it was learned
+  /// from, so that the search is repeated.
+  void find_layers() {
+    const Eigen::ArrayXXi thick = found_.zone;
+    const std::size_t thick_zones = found_.zone_is_cut.size();
+    for (int round = 0; round < most_rounds; ++round) {
+      Mask layers = Mask::Constant(thick.rows(), thick.cols(), false);
+      for (const Eigen::Index radius : layer_windows) add_layers(thick, radius, layers);
+      const Eigen::ArrayXXi before = std::exchange(found_.zone, thick);
+      found_.zone_is_cut.resize(thick_zones);
+      label_layers(layers);
+      if ((before == found_.zone).all()) break;
+      learn_from_stable_ground();
+    }
+    found_.zone_is_layer.assign(thick_zones, false);
+    found_.zone_is_layer.resize(found_.zone_is_cut.size(), true);
+  }
+
+  /// Sums of the change over windows, outliers clipped, and how many cells each has.
+  struct WindowSums {
+    AreaSums change;
+    AreaSums count;
+    double known(Cell at, Eigen::Index radius) const { return count.around(at, radius); }
+    double mean(Cell at, Eigen::Index radius) const {
+      return change.around(at, radius) / known(at, radius);
+    }
+  };
+
+  template <typename Wanted>
+  WindowSums window_sums(Wanted wanted) const {
     const double bound = std::max(clip * found_.noise_sd, highest_crumb);
     Eigen::ArrayXXd change = Eigen::ArrayXXd::Zero(found_.zone.rows(), found_.zone.cols());
     Eigen::ArrayXXd count = change;
     for_each_cell(change, [&](Cell cell) {
-      if (!is_stable(cell)) return;
+      if (!wanted(cell)) return;
       const double off = found_.difference(cell.row, cell.col) - found_.datum;
       change(cell.row, cell.col) = std::clamp(off, -bound, bound);
       count(cell.row, cell.col) = 1.0;
     });
-    const AreaSums changes(change);
-    const AreaSums counts(count);
-    const auto cells = static_cast<double>((2 * radius + 1) * (2 * radius + 1));
-    const std::size_t stride = 1 + known_cells_ / most_means;
-    std::size_t seen = 0;
-    Eigen::ArrayXXd mean = Eigen::ArrayXXd::Constant(change.rows(), change.cols(), nan);
-    std::vector<double> means;
-    for_each_cell(mean, [&](Cell cell) {
-      const double known = counts.around(cell, radius);
-      if (count(cell.row, cell.col) == 0.0 || known < least_layer_share * cells) return;
-      mean(cell.row, cell.col) = changes.around(cell, radius) / known;
-      if (seen++ % stride == 0) means.push_back(mean(cell.row, cell.col));
-    });
-    if (means.size() < fewest_stable_cells) return false;
-    const Spread spread = robust_spread(std::move(means));
-    const double sd = std::max(spread.sd, found_.noise_sd / std::sqrt(cells));
-    return mark_layers((mean - spread.middle) / sd, cells);
+    return {AreaSums(change), AreaSums(count)};
   }
 
-  bool mark_layers(const Eigen::ArrayXXd& significance, double cells_of_window) {
+  /// Marks ground beside the thick zones whose mean over a window rises above the scatter of such
+  /// means on stable ground, correlated errors included.
+  void add_layers(const Eigen::ArrayXXi& thick, Eigen::Index radius, Mask& layers) const {
+    const auto is_open = [&](Cell cell) {
+      return is_known(cell) && thick(cell.row, cell.col) == stable;
+    };
+    const auto cells = static_cast<double>((2 * radius + 1) * (2 * radius + 1));
+    const Spread usual = scatter_of_means(radius);
+    if (!(usual.sd > 0.0)) return;
+    const WindowSums sums = window_sums(is_open);
+    Eigen::ArrayXXd significance = Eigen::ArrayXXd::Constant(thick.rows(), thick.cols(), nan);
+    for_each_cell(thick, [&](Cell cell) {
+      if (!is_open(cell) || sums.known(cell, radius) < least_layer_share * cells) return;
+      significance(cell.row, cell.col) = (sums.mean(cell, radius) - usual.middle) / usual.sd;
+    });
+    mark_layers(significance, cells, layers);
+  }
+
+  /// Of the means over windows of stable ground; 0 where there is too little.
+  Spread scatter_of_means(Eigen::Index radius) const {
+    const auto cells = static_cast<double>((2 * radius + 1) * (2 * radius + 1));
+    const WindowSums sums = window_sums([&](Cell cell) { return is_stable(cell); });
+    const std::size_t stride = 1 + known_cells_ / most_means;
+    std::size_t seen = 0;
+    std::vector<double> means;
+    for_each_cell(found_.zone, [&](Cell cell) {
+      if (!is_stable(cell) || sums.known(cell, radius) < least_layer_share * cells) return;
+      if (seen++ % stride == 0) means.push_back(sums.mean(cell, radius));
+    });
+    if (means.size() < fewest_stable_cells) return {};
+    Spread spread = robust_spread(std::move(means));
+    spread.sd = std::max(spread.sd, found_.noise_sd / std::sqrt(cells));
+    return spread;
+  }
+
+  void mark_layers(const Eigen::ArrayXXd& significance, double cells_of_window,
+                   Mask& layers) const {
     constexpr int unvisited = -1;
     Eigen::ArrayXXi label =
         Eigen::ArrayXXi::Constant(significance.rows(), significance.cols(), unvisited);
     const double least =
         std::max(options_.min_zone_area, cells_of_window * cell_size_ * cell_size_);
-    bool found = false;
     for_each_cell(label, [&](Cell seed) {
       if (label(seed.row, seed.col) != unvisited) return;
       if (!(significance(seed.row, seed.col) >= options_.detection)) return;
@@ -324,14 +367,19 @@ class ChangeFinder {
         return significance(cell.row, cell.col) >= options_.growth;
       });
       if (static_cast<double>(cells.size()) * cell_size_ * cell_size_ < least) return;
-      const int index = static_cast<int>(found_.zone_is_cut.size());
-      for (const Cell cell : cells) found_.zone(cell.row, cell.col) = index;
-      found_.zone_is_cut.push_back(reaches_the_edge(cells));
-      found_.zone_is_layer.resize(found_.zone_is_cut.size(), false);
-      found_.zone_is_layer.back() = true;
-      found = true;
+      for (const Cell cell : cells) layers(cell.row, cell.col) = true;
     });
-    return found;
+  }
+
+  /// Makes zones of what hangs together.
+  void label_layers(const Mask& layers) {
+    for_each_cell(layers, [&](Cell seed) {
+      if (!layers(seed.row, seed.col) || found_.zone(seed.row, seed.col) != stable) return;
+      const int index = static_cast<int>(found_.zone_is_cut.size());
+      const std::vector<Cell> cells = mark_connected(
+          found_.zone, seed, index, [&](Cell cell) { return layers(cell.row, cell.col); });
+      found_.zone_is_cut.push_back(reaches_the_edge(cells));
+    });
   }
 
   double clipped_mean(const std::vector<double>& changes, double middle) const {
@@ -358,7 +406,7 @@ class ChangeFinder {
   const ChangeOptions& options_;
   ChangedGround found_;
   Smoothed smoothed_;
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> at_rim_;  // of the survey
+  Mask at_rim_;  // of the survey
   Holes holes_;  // of the difference, filled by a membrane
   std::size_t known_cells_ = 0;
   Eigen::ArrayXXd scatter_;         // variance of a 3 x 3 mean by the scatter of the points [m^2]

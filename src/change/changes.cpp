@@ -302,9 +302,23 @@ class ChangeReader {
     return {ChangeKind::small_rises, "soil strewn off the swing", prior::anywhere, true};
   }
 
-  /// More than digs spill beside the hole, where the heap lies elsewhere, may be a berm.
+  bool is_ridge(Place p) const {
+    return beside(p) && zone(p).volume > small_share * hole_volume() && !is(p, heap_) &&
+           !areas_[p.area].ground.zone_is_layer[p.zone];
+  }
+  bool is_one_of_ridges(Place p) const {
+    std::size_t ridges = 0;
+    for (std::size_t z = 0; z < areas_[p.area].zones.size(); ++z) {
+      ridges += is_ridge({p.area, z}) ? 1 : 0;
+    }
+    return is_ridge(p) && ridges > 1;
+  }
+
+  /// Where the heap lies elsewhere, more than digs spill beside the hole may be a berm, and so may
+  /// one of several ridges.
   Meaning meaning_of_spill(Place p) const {
-    if (heap_ && zone(p).volume > largest_spill * hole_volume()) {
+    const bool is_large = zone(p).volume > largest_spill * hole_volume();
+    if (heap_ && (is_large || is_one_of_ridges(p))) {
       return {ChangeKind::spill, "a ridge beside the hole", prior::large_spill, false};
     }
     return {ChangeKind::spill, "spill beside the hole", certain, true};

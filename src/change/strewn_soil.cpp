@@ -18,6 +18,11 @@ constexpr double near_soil = 0.6;       // ours: from hole, spill or heap [m]
 constexpr double clip = 4.0;            // sd of a cell
 constexpr double highest_crumb = 0.03;  // ours [m]
 constexpr double fewest_far = 100.0;    // ours: cells
+/// Share of digs with soil strewn too thin for a layer, ours: of those without layers, and of those
+/// whose layers are more than so much of what rose.
+constexpr double strewn_without = 0.3;
+constexpr double strewn_by_layers = 0.95;
+constexpr double least_layers = 0.002;
 
 /// A volume and its variance by source [m^3, m^6].
 struct OutsideSum {
@@ -79,10 +84,11 @@ struct StrewnSoil {
   double by_chance = 0.0;  ///< and by not knowing whether there is any
 };
 
-StrewnSoil expected_soil(const OutsideSum& sum, double rose) {
-  constexpr double strewn = 0.3;  // ours: of digs
+StrewnSoil expected_soil(const OutsideSum& sum, double rose, double layers) {
   constexpr double usual = 0.01;  // ours: sd of what no layer is found of, of what rose
-  const double prior_sd = usual * rose;
+  constexpr double beside = 0.3;  // ours: and of what lies beside layers, of these
+  const double strewn = layers > least_layers * rose ? strewn_by_layers : strewn_without;
+  const double prior_sd = std::hypot(usual * rose, beside * layers);
   const double sd = sum.sd();
   if (!(sd > 0.0) || !(prior_sd > 0.0)) return {};
   const double variance = sd * sd + prior_sd * prior_sd;
@@ -93,6 +99,19 @@ StrewnSoil expected_soil(const OutsideSum& sum, double rose) {
   const double within = sd * sd * prior_sd * prior_sd / variance;
   const double value = std::max(0.0, likely * mean);  // no soil is less than none
   return {value, likely * within, std::max(0.0, likely * mean * mean - value * value)};
+}
+
+/// What (hole, spill, heap) lack for each unit of soil that lies on ground taken for stable,
+/// because it raises the datum.
+Eigen::Vector3d lost_by_datum(const Area& area) {
+  Eigen::Vector3d lost = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    if (area.kinds[i] == ZoneKind::dig) lost(0) -= area.zones[i].area;
+    if (area.kinds[i] == ZoneKind::spill) lost(1) += area.zones[i].area;
+    if (area.kinds[i] == ZoneKind::dump) lost(2) += area.zones[i].area;
+  }
+  const double cells = static_cast<double>((!area.ground.residual.isNaN()).count());
+  return lost / (cells * area.grid.cell_size * area.grid.cell_size);
 }
 
 /// Volume of the layers that were found and counted.
@@ -108,9 +127,9 @@ double layers_of(const Area& area) {
 }  // namespace
 
 void add_strewn_soil(const std::vector<Area>& areas, VolumeChange& change) {
-  constexpr double missed = 0.1;  // ours: of a layer, at its edges and in crumbs
   OutsideSum sum;
   double layers = 0.0;
+  Eigen::Vector3d lost = Eigen::Vector3d::Zero();
   for (const Area& area : areas) {
     layers += layers_of(area);
     const OutsideSum outside = outside_of(area);
@@ -118,18 +137,24 @@ void add_strewn_soil(const std::vector<Area>& areas, VolumeChange& change) {
     sum.noise += outside.noise;
     sum.correlated += outside.correlated;
     sum.datum += outside.datum;
+    if (outside.volume != 0.0) lost += lost_by_datum(area) / static_cast<double>(areas.size());
   }
-  const StrewnSoil soil = expected_soil(sum, change.after.value);
+  const StrewnSoil soil = expected_soil(sum, change.after.value, layers);
   change.outside = {sum.volume, sum.sd()};
   change.strewn = {soil.volume, std::sqrt(soil.by_sum + soil.by_chance)};
-  change.spilled.value += soil.volume;
-  change.after.value += soil.volume;
-  change.errors.thin(1, 1) += soil.by_chance + std::pow(missed * layers, 2);
+  const Eigen::Vector3d effect = Eigen::Vector3d::UnitY() + lost;
+  change.excavated.value += effect(0) * soil.volume;
+  change.spilled.value += effect(1) * soil.volume;
+  change.dumped.value += effect(2) * soil.volume;
+  change.before.value = change.excavated.value;
+  change.after.value = change.spilled.value + change.dumped.value;
+  const Eigen::Matrix3d shape = effect * effect.transpose();
+  change.errors.thin += soil.by_chance * shape;
   if (!(sum.sd() > 0.0)) return;
   const double share = soil.by_sum / (sum.sd() * sum.sd());
-  change.errors.noise(1, 1) += share * sum.noise;
-  change.errors.correlated(1, 1) += share * sum.correlated;
-  change.errors.datum(1, 1) += share * sum.datum;
+  change.errors.noise += share * sum.noise * shape;
+  change.errors.correlated += share * sum.correlated * shape;
+  change.errors.datum += share * sum.datum * shape;
 }
 
 }  // namespace excavplan

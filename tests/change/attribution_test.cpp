@@ -247,6 +247,22 @@ TEST(Attribution, SecondHeapOfHardGroundIsNotDropped) {
   EXPECT_TRUE(reads(change, 2.0) && reads(change, 1.74));
 }
 
+/// A ridge of an eighth of the hole on the side where no spill lies.
+TEST(Attribution, OneOfTwoRidgesBesideTheHoleMayBeABerm) {
+  const Dig dig;
+  Dig berm = dig;
+  berm.pit_depth = 0.0;
+  berm.ridge_offset = -1.0;
+  berm.ridge_height = 0.14;
+  const VolumeChange change =
+      change_of([&](double x, double y) { return dug(x, y) + berm.dug(x, y); });
+  const double without = 1.25;
+  EXPECT_NEAR(bulking_factor(change)->value, without + berm.ridge_volume() / hole, 0.01);
+  EXPECT_TRUE(reads(change, without));
+  EXPECT_LT((*bulking_interval(change))[0], without) << "all of that reading is in it";
+  EXPECT_GT((*bulking_interval(change_of(dug)))[0], without - 0.02) << "one ridge is spill";
+}
+
 TEST(Attribution, WeightFarFromTheAnswerIsInTheDeviation) {
   const double extra = cone_volume(0.4);
   const auto two = [](double x, double y) { return dug(x, y) + cone(x, y, {3.2, -1.8}, 0.4); };

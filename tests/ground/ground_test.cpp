@@ -598,6 +598,7 @@ TEST(VolumeChange, ScansThatMayErrSoAreNotSaidToBeSwapped) {
 }
 
 /// What a hole and a heap err is what the volumes of their kind err.
+/// That of hole and heap has, beside that of their zones, what strewn soil may do to the datum.
 TEST(VolumeChange, TheErrorOfAZoneHasAllItsSources) {
   const VolumeChange change =
       measure_change(noisy(flat_ground(scene, 0.05), 0.01, 1, 1), noisy(dug_scene(), 0.01, 1, 2));
@@ -608,7 +609,7 @@ TEST(VolumeChange, TheErrorOfAZoneHasAllItsSources) {
     ASSERT_EQ(zones_of(change, kind), 1);
     for (const ChangeZone& zone : change.zones) {
       if (zone.kind == kind) {
-        EXPECT_NEAR(zone.volume.sd / std::sqrt(scans(at, at)), 1.0, 1e-9);
+        EXPECT_NEAR(zone.volume.sd / std::sqrt(scans(at, at)), 1.0, 0.02);
       }
     }
   }
@@ -717,10 +718,10 @@ TEST(VolumeChange, SoilTooThinToTellWidensTheInterval) {
   const auto thin_of = [](double noise) {
     const VolumeChange change = measure_change(noisy(flat_ground(scene, 0.05), noise, 1, 1),
                                                noisy(dug_scene(), noise, 1, 2));
-    EXPECT_EQ(change.errors.thin(0, 0), 0.0);
+    EXPECT_LT(change.errors.thin(0, 0), 1e-7) << "by the datum alone";
     return std::sqrt(change.errors.thin(2, 2));
   };
-  EXPECT_EQ(thin_of(0.004), 0.0);
+  EXPECT_LT(thin_of(0.004), 1e-4) << "likewise";
   const double lowest = 3.0 * std::sqrt(2.0) * 0.03 / 3.0;  // that is told, of 3 x 3 cells
   const double beyond = lowest / 0.3 - lowest / 0.5;
   const double edge = 8.0 * heap_radius;  // of a square about it: the sides of its cells
