@@ -38,8 +38,8 @@ def check_codes():
 
 def codes_of_the_sources():
     """Each code with what it does to trust: kept, depends or ended."""
-    table = (SOURCE / "src/base/warning.cpp").read_text()
-    return dict(re.findall(r'CodeRow\{WarningCode::\w+, "(\w+)", Trust::(\w+)\}', table))
+    table = (SOURCE / "include/excavplan/base/warning_codes.def").read_text()
+    return dict(re.findall(r"^EXCAVPLAN_WARNING\((\w+), (\w+)\)$", table, re.MULTILINE))
 
 
 def check_codes_of_the_sources():
