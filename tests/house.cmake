@@ -72,11 +72,11 @@ foreach(place "README.md|${count} command line tools" "docs/ecosystem.md|${count
   endif()
 endforeach()
 
-# The checks of scripts/check-all are those of the table in docs/reliability.md.
+# The checks of scripts/check-all are those of the table in docs/generated/checks.md.
 file(GLOB checks RELATIVE ${ROOT}/scripts/check.d ${ROOT}/scripts/check.d/*)
 list(TRANSFORM checks REPLACE "^[0-9]+-" "")
 list(APPEND checks test)
-check_table(docs/reliability.md checks ${checks})
+check_table(docs/generated/checks.md checks ${checks})
 
 # Every text file names its copyright and licence, or lies where one statement covers the folder.
 file(GLOB_RECURSE licensed RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/* ${ROOT}/tools/*
