@@ -17,6 +17,7 @@ struct Attitude {
   double roll = 0.0;   ///< positive: its left side is up [rad]
   double pitch = 0.0;  ///< positive: its front is down [rad]
 
+  /// Neither turn is there.
   bool is_level() const { return roll == 0.0 && pitch == 0.0; }
   /// Takes vectors of the frame of the machine into the level site frame.
   Eigen::Matrix3d to_site() const;

@@ -20,9 +20,9 @@ namespace excavplan {
 struct StandingGround {
   /// Of the ground, below the middle of those ends of the tracks beside which it is seen [m].
   std::optional<double> height;
-  /// Slopes of the ground along x and y, positive uphill [rad].
-  std::optional<double> rise_ahead, rise_left;
-  double seen = 0.0;  ///< share of the metre about the tracks, 0 .. 1
+  std::optional<double> rise_ahead;  ///< slope of the ground along x, positive uphill [rad]
+  std::optional<double> rise_left;   ///< the same along y [rad]
+  double seen = 0.0;                 ///< share of the metre about the tracks, 0 .. 1
   /// ground_above_tracks *, ground_below_tracks *, ground_tilted *, drop_at_tracks *,
   /// soil_under_tracks * and ground_at_tracks_unseen. Those marked * end trust.
   std::vector<Warning> warnings;
