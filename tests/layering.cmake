@@ -6,7 +6,7 @@ cmake_minimum_required(VERSION 3.24)
 
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
-set(rooms base optimisation ground change soil machine simulation sensing calibration planning kit
+set(rooms base optimisation ground change soil belief machine simulation sensing calibration planning kit
   clouds scans logs efficiency images recording density paper experiments results maps drawing figures
   robot)
 set(base_may_use "")
@@ -14,6 +14,7 @@ set(optimisation_may_use "")
 set(ground_may_use "")
 set(change_may_use ground)
 set(soil_may_use "")
+set(belief_may_use optimisation ground soil)
 set(machine_may_use "")
 set(simulation_may_use ground soil machine)
 set(sensing_may_use ground change soil machine simulation)
