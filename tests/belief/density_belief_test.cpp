@@ -244,7 +244,7 @@ TEST(DensityBelief, NoDeviationGrowsByMoreEvidence) {
   const std::vector<GroundPlace> places = some_places(40);
   DensityBelief belief;
   Eigen::ArrayXd sd = belief.at(places).sd_percent;
-  EXPECT_NEAR(sd(0), std::sqrt(25.0 * 25.0 + 49.0 + std::pow(5.0 * places[0].depth, 2)), 1e-12);
+  EXPECT_NEAR(sd(0), std::sqrt(25.0 * 25.0 + 100.0 + std::pow(5.0 * places[0].depth, 2)), 1e-12);
   for (int i = 0; i < 60; ++i) {
     DigEvidence dig = some_dig(i);
     dig.limits = {{i % 4 == 0, i % 4 == 0 ? 0.1 : -0.4, 0.3, {50.0, 0.015, 0.8}}};
