@@ -32,6 +32,11 @@ set(thorough_change_test
   Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/correlated
   Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/unseen
   From/FarFlank.ErrsByTwoDegreesInTheVolumeOfTheHeap/*)
+# Six hundred fields, refitted after each dig.
+set(thorough_belief_test
+  BeliefStatistics.IsNearExactBayesWithWhatIsRefittedAfterEachDig
+  BeliefStatistics.ErrsByLessThanTwoAndAHalfPointsOnConstantSoil
+  BeliefStatistics.LosesLittleOnOtherFields)
 # A simulator of discrete elements in Python.
 set(thorough_simulation_test
   CommandSimulator.TheExampleInDiscreteElementsDigs)

@@ -38,19 +38,39 @@ struct FieldPoints {
   std::vector<std::size_t> layer;  ///< of each point, in depths
 };
 
+/// The places of many parts for covariances with all of them.
+class FieldParts {
+ public:
+  void add(FieldPart part);
+  Eigen::Index size() const { return static_cast<Eigen::Index>(parts_.size()); }
+  const std::vector<FieldPart>& all() const { return parts_; }
+
+ private:
+  friend class DensityField;
+  std::vector<FieldPart> parts_;
+  std::vector<double> x_;  ///< of all places of all parts
+  std::vector<double> y_;
+  std::vector<double> depth_;
+};
+
 /// The Gaussian process of a belief: level, trend over depth and Matern field.
 class DensityField {
  public:
-  explicit DensityField(const BeliefSettings& settings) : settings_(settings) {}
+  explicit DensityField(const BeliefSettings& settings);
 
-  double covariance(const FieldPart& a, const FieldPart& b) const;
   double variance(double depth) const;  ///< of a point
-  /// Covariances with points `first` .. `first` + size of the result.
+  double covariance(const FieldPart& a, const FieldPart& b) const;
+  Eigen::VectorXd covariances(const FieldPart& part, const FieldParts& parts) const;
+  /// With points `first` .. `first` + size of the result.
   void covariances(const FieldPart& part, const FieldPoints& points, Eigen::Index first,
                    Eigen::Ref<Eigen::ArrayXd> result) const;
 
  private:
-  BeliefSettings settings_;
+  double level_variance_ = 0.0;
+  double trend_variance_ = 0.0;
+  double spread_variance_ = 0.0;
+  double scale_ = 0.0;  ///< of distances in plan
+  double depth_scale_ = 0.0;
 };
 
 }  // namespace excavplan

@@ -86,13 +86,11 @@ void DualForm::add(const DigEvidence& dig) {
   const bool has_reading =
       dig.survey || dig.payload_percent || !dig.resistance.empty() || !dig.limits.empty();
   if (dig.bank.empty() || dig.bank_share < least_bank_share || !has_reading) return;
-  parts_.push_back(field_part(dig.bank));
-  const auto digs = static_cast<Eigen::Index>(parts_.size());
+  parts_.add(field_part(dig.bank));
+  first_rows_.push_back(static_cast<Eigen::Index>(rows_.size()));
+  const Eigen::Index digs = parts_.size();
   make_room(part_covariance_, digs, digs);
-  for (Eigen::Index i = 0; i < digs; ++i) {
-    part_covariance_(i, digs - 1) = part_covariance_(digs - 1, i) =
-        field_.covariance(parts_[static_cast<std::size_t>(i)], parts_.back());
-  }
+  part_covariance_.col(digs - 1).head(digs) = field_.covariances(parts_.all().back(), parts_);
   make_room(triangle_, digs, digs);
   if (dig.survey) append(reading_of(*dig.survey));
   if (dig.payload_percent) append(reading_of_payload(*dig.payload_percent));
@@ -104,7 +102,7 @@ void DualForm::add(const DigEvidence& dig) {
 
 DualForm::Foretold DualForm::foretold(const LinearReading& reading) const {
   const auto rows = static_cast<Eigen::Index>(rows_.size());
-  const Eigen::Index last = static_cast<Eigen::Index>(parts_.size()) - 1;
+  const Eigen::Index last = parts_.size() - 1;
   const StateVector states = state_variances_.cwiseProduct(reading.states);
   Foretold result;
   result.factor.resize(rows);
@@ -124,7 +122,7 @@ DualForm::Foretold DualForm::foretold(const LinearReading& reading) const {
 
 void DualForm::append(const LinearReading& reading, bool is_limit) {
   const auto rows = static_cast<Eigen::Index>(rows_.size());
-  const auto digs = static_cast<Eigen::Index>(parts_.size());
+  const Eigen::Index digs = parts_.size();
   reserve(rows + 1, digs);
   const Foretold before = foretold(reading);
   const double own = reading.variance + shared_covariance(reading, reading);
@@ -134,7 +132,11 @@ void DualForm::append(const LinearReading& reading, bool is_limit) {
   factor_(rows, rows) = sd;
   innovations_(rows) = (reading.value - before.mean) / sd;
 
-  Eigen::VectorXd gains = -gains_.topLeftCorner(rows, digs).transpose() * before.factor;
+  Eigen::VectorXd gains(digs);  // a dig has none in rows before its first
+  for (Eigen::Index d = 0; d < digs; ++d) {
+    const Eigen::Index count = rows - first_rows_[static_cast<std::size_t>(d)];
+    gains(d) = -gains_.col(d).segment(rows - count, count).dot(before.factor.tail(count));
+  }
   gains(digs - 1) += reading.density_gain;
   gains /= sd;
   gains_.row(rows).head(digs) = gains.transpose();
@@ -162,7 +164,7 @@ void DualForm::append(const LimitReading& limit) {
 }
 
 void DualForm::extend_triangle(Eigen::VectorXd row) {
-  const auto digs = static_cast<Eigen::Index>(parts_.size());
+  const Eigen::Index digs = parts_.size();
   const bool is_first = rows_.size() == 1 || rows_[rows_.size() - 2].dig != digs - 1;
   if (is_first) {
     triangle_.row(digs - 1).head(digs) = row.transpose();
@@ -187,7 +189,7 @@ void DualForm::reserve(Eigen::Index rows, Eigen::Index digs) {
 }
 
 BelievedDensity DualForm::at(const FieldPoints& points) const {
-  const auto digs = static_cast<Eigen::Index>(parts_.size());
+  const Eigen::Index digs = parts_.size();
   const auto rows = static_cast<Eigen::Index>(rows_.size());
   const Eigen::Index count = points.x.size();
   const Eigen::VectorXd weights =
@@ -200,7 +202,8 @@ BelievedDensity DualForm::at(const FieldPoints& points) const {
     const Eigen::Index size = std::min(block, count - first);
     covariances.resize(size, digs);
     for (Eigen::Index d = 0; d < digs; ++d) {
-      field_.covariances(parts_[static_cast<std::size_t>(d)], points, first, covariances.col(d));
+      field_.covariances(parts_.all()[static_cast<std::size_t>(d)], points, first,
+                         covariances.col(d));
     }
     result.raw_percent.segment(first, size) =
         settings_.mean_percent + (covariances.matrix() * weights).array();
@@ -209,25 +212,22 @@ BelievedDensity DualForm::at(const FieldPoints& points) const {
       const double depth = points.depths[points.layer[static_cast<std::size_t>(first + i)]];
       result.sd_percent(first + i) = field_.variance(depth);
     }
-    result.sd_percent.segment(first, size) =
-        (result.sd_percent.segment(first, size) - explained.rowwise().squaredNorm().array())
-            .max(0.0)
-            .sqrt();
+    auto variances = result.sd_percent.segment(first, size);
+    for (Eigen::Index d = 0; d < digs; ++d) variances -= explained.col(d).array().square();
+    variances = variances.max(0.0).sqrt();
   }
   return result;
 }
 
 BelievedMeans DualForm::means_of(const std::vector<FieldPart>& parts) const {
-  const auto digs = static_cast<Eigen::Index>(parts_.size());
+  const Eigen::Index digs = parts_.size();
   const auto rows = static_cast<Eigen::Index>(rows_.size());
   const auto count = static_cast<Eigen::Index>(parts.size());
   Eigen::MatrixXd with_digs(digs, count);
   BelievedMeans result{Eigen::VectorXd(count), Eigen::MatrixXd(count, count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const FieldPart& part = parts[static_cast<std::size_t>(i)];
-    for (Eigen::Index d = 0; d < digs; ++d) {
-      with_digs(d, i) = field_.covariance(parts_[static_cast<std::size_t>(d)], part);
-    }
+    with_digs.col(i) = field_.covariances(part, parts_);
     for (Eigen::Index j = 0; j <= i; ++j) {
       result.covariance(i, j) = result.covariance(j, i) =
           field_.covariance(parts[static_cast<std::size_t>(j)], part);

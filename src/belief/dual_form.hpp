@@ -67,9 +67,10 @@ class DualForm {
   BeliefSettings settings_;
   DensityField field_;
   StateVector state_variances_;
-  std::vector<FieldPart> parts_;  ///< of the digs with readings
+  FieldParts parts_;  ///< of the digs with readings
   std::vector<Row> rows_;
-  Eigen::MatrixXd part_covariance_;  ///< prior, of the digs; with room to grow, as all below
+  std::vector<Eigen::Index> first_rows_;  ///< of each of these digs
+  Eigen::MatrixXd part_covariance_;  ///< prior, of the digs, upper; with room to grow, as all below
   Eigen::MatrixXd factor_;           ///< L, lower: L L^T is the covariance of the readings
   Eigen::MatrixXd gains_;            ///< V = L^-1 G, rows x digs
   Eigen::MatrixXd triangle_;         ///< T, lower, digs x digs: T^T T = V^T V
