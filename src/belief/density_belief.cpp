@@ -96,6 +96,7 @@ BelievedDensity DensityBelief::at(const std::vector<GroundPlace>& places) const 
 
 BelievedMeans DensityBelief::means_of(const std::vector<std::vector<BankPart>>& parts) const {
   std::vector<FieldPart> of_field;
+  of_field.reserve(parts.size());
   for (const std::vector<BankPart>& part : parts) of_field.push_back(field_part(condensed(part)));
   return dual_->means_of(of_field);
 }

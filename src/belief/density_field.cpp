@@ -21,15 +21,12 @@ inline double decay(double x) {
   constexpr double shifter = 6755399441055744.0;  // 1.5 2^52: the sum's last bits are an integer
   const double shifted = x * 1.4426950408889634 + shifter;
   const double r = (shifted - shifter) * 0.6931471805599453 - x;  // within 0.35
-  double series = 1.0 / 3628800.0 + r * (1.0 / 39916800.0);
-  series = 1.0 / 362880.0 + r * series;
-  series = 1.0 / 40320.0 + r * series;
-  series = 1.0 / 5040.0 + r * series;
-  series = 1.0 / 720.0 + r * series;
-  series = 1.0 / 120.0 + r * series;
-  series = 1.0 / 24.0 + r * series;
-  series = 1.0 / 6.0 + r * series;
-  series = 1.0 + r * (1.0 + r * (0.5 + r * series));
+  const double r2 = r * r;
+  const double r4 = r2 * r2;
+  const double low = (1.0 + r) + r2 * (0.5 + r * (1.0 / 6.0));
+  const double middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
+  const double high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0);
+  const double series = low + r4 * (middle + r4 * high);
   std::uint64_t bits = 0;
   std::memcpy(&bits, &shifted, sizeof bits);
   bits = (std::uint64_t{1023} - bits) << 52;  // 2^-n

@@ -14,7 +14,7 @@ namespace {
 constexpr double least_sd_percent = 0.1;  // of a density that is read [points]; ours
 constexpr double least_log_sd = 0.01;     // of a logarithm that is read; ours
 constexpr double least_news = 1e-6;       // of a limit, part of the variance that it takes; ours
-constexpr Eigen::Index block = 256;       // points that are predicted at once, to stay in the cache
+constexpr Eigen::Index block = 128;       // points that are predicted at once, to stay in the cache
 
 enum State { law_error, payload_error, log_strength };
 
