@@ -3,6 +3,7 @@
 #include "belief/belief_refit.hpp"
 
 #include <cmath>
+#include <functional>
 
 #include <Eigen/Eigenvalues>
 

@@ -50,7 +50,8 @@ struct Layout {
   Layout(std::uint64_t seed, double length) {
     Random random(seed, 1);
     for (int i = 0; i <= digs; ++i) {
-      const double x = 1.6 * (i / 2) + random.uniform(-0.3, 0.3);
+      const int station = i / 2;
+      const double x = 1.6 * station + random.uniform(-0.3, 0.3);
       const double y = (i % 2 == 0 ? -0.4 : 0.4) + random.uniform(-0.1, 0.1);
       std::vector<BankPart> bank;
       for (int a = 0; a < 10; ++a) {

@@ -43,6 +43,7 @@ DigEvidence some_dig(int i) {
 
 std::vector<DigEvidence> some_digs(int count) {
   std::vector<DigEvidence> digs;
+  digs.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) digs.push_back(some_dig(i));
   return digs;
 }
@@ -50,6 +51,7 @@ std::vector<DigEvidence> some_digs(int count) {
 std::vector<GroundPlace> some_places(int count) {
   Random random(11);
   std::vector<GroundPlace> places;
+  places.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     places.push_back({random.uniform(-2.0, 12.0), random.uniform(-4.0, 4.0),
                       0.1 * static_cast<double>(random.index(8))});
