@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "change/attribution.hpp"
@@ -206,7 +207,7 @@ void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
 /// Of errors that neighbouring ground shares.
 void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
   constexpr double noted = 0.010;  // ours: of errors that were taken off [m]
-  constexpr double most = 0.010;   // ours: of those left; below it volumes hardly suffer [m]
+  constexpr double most = 0.0025;  // ours: of the mean height of 1 m^2, as 10 mm over 0.1 m [m]
   if (area.systematic_rms > noted) {
     warnings.emplace_back(WarningCode::systematic_errors,
                           "stripes or a dome of " + millimetres(area.systematic_rms) +
@@ -215,7 +216,8 @@ void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
                               "together");
   }
   const double left = std::sqrt(area.noise.correlated);
-  if (left > most && area.noise.length > area.grid.cell_size) {
+  const double of_mean = left * std::min(1.0, std::sqrt(2.0 * pi) * area.noise.length);
+  if (of_mean > most) {
     warnings.emplace_back(
         WarningCode::scans_do_not_fit,
         "ground that did not change rose and fell by " + millimetres(left) +

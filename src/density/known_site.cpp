@@ -184,6 +184,7 @@ Scan scan_of(const GroundState& ground) {
 }
 
 void set_deviation(const GroundState& ground, Surface& before) {
+  before.points.resize(0, 0);  // what is known has no returns
   if (ground.deviation.size() == 0 || before.variance.size() == 0) return;
   const Eigen::ArrayXXd told = layer_on(before.height, ground.terrain.bank, ground.deviation);
   before.variance = (told.square() > before.variance || before.variance.isNaN())
