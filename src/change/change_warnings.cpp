@@ -207,7 +207,8 @@ void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
 /// Of errors that neighbouring ground shares.
 void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
   constexpr double noted = 0.010;  // ours: of errors that were taken off [m]
-  constexpr double most = 0.0025;  // ours: of the mean height of 1 m^2, as 10 mm over 0.1 m [m]
+  constexpr double most = 0.010;   // ours: of those left; below it volumes hardly suffer [m]
+  constexpr double most_of_mean = 0.0025;  // ours: of the mean of 1 m^2, as 10 mm over 0.1 m [m]
   if (area.systematic_rms > noted) {
     warnings.emplace_back(WarningCode::systematic_errors,
                           "stripes or a dome of " + millimetres(area.systematic_rms) +
@@ -217,7 +218,7 @@ void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
   }
   const double left = std::sqrt(area.noise.correlated);
   const double of_mean = left * std::min(1.0, std::sqrt(2.0 * pi) * area.noise.length);
-  if (of_mean > most) {
+  if (left > most && of_mean > most_of_mean) {
     warnings.emplace_back(
         WarningCode::scans_do_not_fit,
         "ground that did not change rose and fell by " + millimetres(left) +

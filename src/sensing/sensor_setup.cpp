@@ -14,8 +14,8 @@ namespace excavplan {
 namespace {
 
 /// A D435i below the end of the boom of a machine of 12 t, which is lowered over what is scanned:
-/// from farther than 3 m its heights err by centimetres. Its long image axis lies along the boom, so
-/// that it sees from 1.8 m to 7.2 m before the swing axis. Place, range and frames are ours.
+/// from farther than 3 m its heights err by centimetres. Its long image axis lies along the boom,
+/// so that it sees from 1.8 m to 7.2 m before the swing axis. Place, range and frames are ours.
 SensorSetup boom_camera() {
   DepthCamera camera;
   camera.position = {4.5, -0.3, 2.9};
@@ -80,7 +80,9 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const Sensor
 }
 
 SceneScans scan_scene(const DigScene& scene, const SensorSetup& setup, std::uint64_t seed) {
-  const std::vector<double> swings = {0.0, std::atan2(scene.dump_at.y(), scene.dump_at.x())};
+  constexpr double beside = 0.25;  // ours: over both halves of a heap of several buckets [rad]
+  const double dump = std::atan2(scene.dump_at.y(), scene.dump_at.x());
+  const std::vector<double> swings = {0.0, dump - beside, dump + beside};
   const auto scan = [&](const HeightMap& surface, std::uint64_t epoch) {
     auto points = scan_surface(surface, setup, swings, Random(seed, epoch).bits());
     if (!points.empty()) return points;

@@ -159,17 +159,16 @@ TEST(ObstacleScan, ReliefAgainstLevelGroundEndsTrust) {
 /// Scans of which a program of all of them (scripts/check.d/69-obstacles) has a thousand.
 TEST(ObstacleScan, NoTrustedMotionHitsAShape) {
   const ObstacleJudge judge;
-  int trusted = 0, clear = 0, alarms = 0;
-  for (const std::uint64_t number : {0, 1, 2, 8, 17, 25, 62, 63, 98}) {
+  int trusted = 0, clear = 0;
+  for (const std::uint64_t number : {1, 2, 3, 8, 17, 25, 62, 63, 98}) {
     const SceneVerdict verdict = judge.judge(number);
     EXPECT_FALSE(verdict.hits()) << number << ": " << verdict.text;
     trusted += verdict.trusted ? 1 : 0;
     clear += verdict.clear ? 1 : 0;
-    alarms += verdict.is_false_alarm() ? 1 : 0;
+    EXPECT_FALSE(verdict.is_false_alarm()) << number << ": " << verdict.text;
   }
   EXPECT_GE(trusted, 5);
   EXPECT_GE(clear, 5);
-  EXPECT_EQ(alarms, 0);
 }
 
 class ReportedObstacles : public ::testing::TestWithParam<const char*> {};

