@@ -19,7 +19,8 @@
 namespace excavplan {
 namespace {
 
-constexpr double least_warned_share = 0.01;  // of the volume of its kind; smaller ones are ignored
+constexpr double least_warned_share =
+    0.01;  // of the volume dug or laid down; smaller ones are ignored
 constexpr double least_refused_share = 0.1;  // likewise
 constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
 constexpr double least_stable_share = 0.4;   // ours
@@ -76,9 +77,8 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
     case ZoneKind::dig:
       return change.excavated.value;
     case ZoneKind::spill:
-      return change.spilled.value;
     case ZoneKind::dump:
-      return change.dumped.value;
+      return change.spilled.value + change.dumped.value;
     case ZoneKind::other:
       break;
   }
@@ -390,6 +390,10 @@ void warn_of_balance(VolumeChange& change) {
 }
 
 void warn_of_missing_soil(VolumeChange& change) {
+  for (Warning& warning : change.warnings) {
+    if (warning.code == WarningCode::no_hole_found)
+      warning.ends_trust = true;  // of a dig that is told
+  }
   const double missing = change.before.value - change.after.value;
   const bool is_said = std::any_of(
       change.warnings.begin(), change.warnings.end(),

@@ -217,8 +217,10 @@ bool is_beside_wall(const Eigen::ArrayXXd& z, Cell at) { return wall_across(z, a
 
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
                                      double cell_size, double margin, const Eigen::ArrayXXi& dug) {
+  const bool is_known = dug.size() > 0;  // then things were told from soil already
   std::vector<Object> objects = standing(after, before, cell_size, margin);
-  std::vector<Object> gone = standing(before, after, cell_size, margin);
+  std::vector<Object> gone;
+  if (!is_known) gone = standing(before, after, cell_size, margin);
   blank(after, objects);
   blank(before, gone);
   blank_faces(before, after, dug);
@@ -226,7 +228,8 @@ std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& a
   // Soil lies level with steep sides only where it was dug, so that a thing before may lie
   // anywhere.
   std::vector<Object> low = lying(before, after, cell_size, margin, false);
-  std::vector<Object> low_before = lying(after, before, cell_size, margin, true);
+  std::vector<Object> low_before;
+  if (!is_known) low_before = lying(after, before, cell_size, margin, true);
   blank(after, low);
   blank(before, low_before);
   objects.insert(objects.end(), low.begin(), low.end());

@@ -27,6 +27,7 @@ struct Object {
 /// rose by less than a fifth of that; or it has a level top and steep sides on dug ground. Freshly
 /// dug soil stands at 28 to 45 degrees; heaps of blocks are as rough as the blocks are large.
 ///
+/// In known ground (`dug` is given) nothing is removed from the scan before: its things are known.
 /// Cells on the face of a wall that stands in both scans become unknown in both: their height is
 /// that of a mixture of wall, face and ground, which soil against the wall changes. Not so where
 /// `dug` is 1: walls of earlier digs in known ground.

@@ -54,11 +54,19 @@ double cell_on(const GroundState& ground, double needed) {
   return cell * std::max(1.0, std::ceil(needed / cell - rounding));
 }
 
+std::optional<Rectangle> area_of_work(const DensityOptions& options) {
+  if (options.worked_area || !options.dug_path || !options.dug_path->start_x) {
+    return options.worked_area;
+  }
+  return worked_area(*options.dug_path);
+}
+
 OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
   OutlinedScans seen;
   seen.stands = options.ground && !is_given(scans.before);
   seen.dig = outlined({seen.stands ? scan_of(*options.ground) : scans.before, scans.after},
                       options.threads);
+  if (options.ground) seen.dig.scans.left_out = area_of_work(options);
   seen.cell_size = seen.dig.cell_size();
   if (options.ground) seen.cell_size = cell_on(*options.ground, seen.cell_size);
   if (scans.dump) {
@@ -503,6 +511,16 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
 }
 
 }  // namespace
+
+Rectangle worked_area(const DugPath& dug) {
+  constexpr double around = 1.0;  // ours: soil that slides and spills [m]
+  constexpr double curl = 1.5;    // ours: of the bucket towards the machine, at most [m]
+  require(dug.start_x.has_value(), "the area of a dug path needs its start");
+  const DigParameters& path = dug.parameters;
+  const double length = path.penetration_length + path.drag_length;
+  const double half = 0.5 * dug.machine.bucket.width_outside + around;
+  return {*dug.start_x - length - curl - around, -half, *dug.start_x + around, half};
+}
 
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options) {

@@ -20,6 +20,7 @@
 #include "ground/noise_model.hpp"
 #include "ground/slopes.hpp"
 #include "ground/too_few_cells.hpp"
+#include "ground/window.hpp"
 
 namespace excavplan {
 namespace {
@@ -77,6 +78,25 @@ class Aligner {
   }
 
   Alignment find() {
+    Motion motion = fitted();
+    if (options_.left_out && !relief_agrees(motion)) {
+      leave_out_relief();
+      motion = fitted();
+    }
+    return judge(motion);
+  }
+
+ private:
+  using Chosen = std::array<bool, 6>;
+  static constexpr Chosen all = {true, true, true, true, true, true};
+  static constexpr double relief = 0.25;  // ours: a slope that is no noise [-]
+
+  struct Solution {
+    Motion motion;
+    MotionCovariance covariance;
+  };
+
+  Motion fitted() {
     Motion motion = Motion::Zero();
     stride_ = samples_.size() / most_samples + 1;
     std::vector<double> changes;
@@ -94,17 +114,33 @@ class Aligner {
     stride_ = 1;
     reweight(motion);
     find_reliable();
-    return judge(motion);
+    return motion;
   }
 
- private:
-  using Chosen = std::array<bool, 6>;
-  static constexpr Chosen all = {true, true, true, true, true, true};
+  static bool is_relief(const Sample& sample) { return sample.effect.head<2>().norm() > relief; }
 
-  struct Solution {
-    Motion motion;
-    MotionCovariance covariance;
-  };
+  /// All sides of relief show a shift alike. A heap that grew shows one to each side.
+  bool relief_agrees(const Motion& motion) const {
+    constexpr double most_sds = 3.0;  // ours
+    constexpr double enough = 0.6;    // ours: of the samples with relief
+    double agree = 0.0;
+    double of_relief = 0.0;
+    for (const Sample& sample : samples_) {
+      if (!is_relief(sample)) continue;
+      of_relief += 1.0;
+      const double away = std::abs(sample.change - sample.effect.dot(motion));
+      if (away < most_sds * scale_) agree += 1.0;
+    }
+    return agree >= enough * of_relief;
+  }
+
+  void leave_out_relief() {
+    std::vector<Sample> level;
+    for (const Sample& sample : samples_) {
+      if (!is_relief(sample)) level.push_back(sample);
+    }
+    if (level.size() >= fewest_cells) samples_ = std::move(level);
+  }
 
   void take_samples(const Surface& before, const Surface& after) {
     const Gradient one = gradient_of(before.height);
@@ -121,20 +157,49 @@ class Aligner {
       sample.change = after.height.z(at.row, at.col) - before.height.z(at.row, at.col);
       sample.effect << slope.x(), slope.y(), 0.0, 0.0, 0.0, 0.0;
       samples_.push_back(sample);
-      found_.centre += Eigen::Vector3d(map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col));
     });
+    leave_out();
     if (samples_.size() < fewest_cells) {
       throw TooFewCells("the surfaces share " + std::to_string(samples_.size()) +
                             " known cells with known neighbours and no steep gradient",
                         fewest_cells, map_.cell_size);
     }
+    for (const Sample& sample : samples_) found_.centre += place_of(sample.cell);
     found_.centre /= static_cast<double>(samples_.size());
     for (Sample& sample : samples_) {
-      const Cell at = sample.cell;
-      const Eigen::Vector3d place =
-          Eigen::Vector3d(map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col)) - found_.centre;
-      sample.effect = motion_effect(place, sample.effect.head<2>());
+      sample.effect = motion_effect(place_of(sample.cell) - found_.centre, sample.effect.head<2>());
     }
+  }
+
+  Eigen::Vector3d place_of(Cell at) const {
+    return {map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col)};
+  }
+
+  /// Ground that was worked on, and that about a hole or a heap: both grow evenly to all sides, so
+  /// that what remains of their slopes seems shifted.
+  void leave_out() {
+    constexpr double enough = 0.1;    // ours: of the samples
+    constexpr double changed = 0.15;  // ours: more than slopes that are shifted by 0.2 m [m]
+    constexpr double around = 0.6;    // ours [m]
+    if (!options_.left_out) return;
+    std::vector<double> changes;
+    for (const Sample& sample : samples_) changes.push_back(sample.change);
+    const double usual = half_sample_mode(std::move(changes));
+    Eigen::ArrayXXd worked = Eigen::ArrayXXd::Zero(map_.z.rows(), map_.z.cols());
+    for (const Sample& sample : samples_) {
+      if (std::abs(sample.change - usual) > changed) worked(sample.cell.row, sample.cell.col) = 1.0;
+    }
+    worked = highest_within(worked, static_cast<Eigen::Index>(std::ceil(around / map_.cell_size)));
+    std::vector<Sample> outside;
+    for (const Sample& sample : samples_) {
+      const bool is_worked =
+          worked(sample.cell.row, sample.cell.col) > 0.0 ||
+          options_.left_out->contains(map_.x(sample.cell.col), map_.y(sample.cell.row));
+      if (!is_worked) outside.push_back(sample);
+    }
+    const auto least = enough * static_cast<double>(samples_.size());
+    if (static_cast<double>(outside.size()) > least && outside.size() >= fewest_cells)
+      samples_ = std::move(outside);
   }
 
   /// Median change of a slope; 0 if no cell is known in both.
@@ -177,6 +242,12 @@ class Aligner {
         (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
     reliable_ = {std::sqrt(share.x()),       std::sqrt(share.y()), 1.0, 1.0, 1.0,
                  std::sqrt(share.maxCoeff())};
+    if (options_.left_out && !has_relief()) reliable_[0] = reliable_[1] = reliable_[5] = 0.0;
+  }
+
+  bool has_relief() const {
+    return std::count_if(samples_.begin(), samples_.end(), is_relief) >=
+           static_cast<std::ptrdiff_t>(fewest_cells);
   }
 
   Solution solve(double variance, const Chosen& chosen) const {

@@ -74,11 +74,13 @@ struct Registering {
   const Rectangle& extent;
   RasterOptions raster;
   double small;  ///< largest shift that realigned() corrects [m]
+  AlignmentOptions options;
 
   /// Aligns; surveys the scan after again where it moves by more than `small`, and aligns the rest.
   void align_again(RegisteredPair& result) const {
     constexpr int most_rounds = 3;
-    result.surfaces.alignment = result.first = align(result.surfaces.before, result.surfaces.after);
+    result.surfaces.alignment = result.first =
+        align(result.surfaces.before, result.surfaces.after, options);
     for (int round = 1; round < most_rounds && improve(small, result); ++round) {
     }
   }
@@ -89,7 +91,7 @@ struct Registering {
     if (!(pair.alignment.largest_shift(pair.after.height) > least)) return false;
     result.correction = pair.alignment.correction() * result.correction;
     pair.after = filled_surface(corrected(after, result.correction), extent, raster);
-    pair.alignment = align(pair.before, pair.after);
+    pair.alignment = align(pair.before, pair.after, options);
     return true;
   }
 
@@ -117,11 +119,12 @@ struct Registering {
   }
 };
 
-/// True if the start of align() may have been too far from the truth.
-bool could_be_elsewhere(const RegisteredPair& pair) {
+/// True if the start of align() may have been too far from the truth. What differs tells nothing if
+/// ground is left out: from another start that is other ground.
+bool could_be_elsewhere(const RegisteredPair& pair, bool is_whole) {
   const Alignment& found = pair.surfaces.alignment;
   return displacement_by(found.correction() * pair.correction, found.centre).is_beyond_prior() ||
-         leaves_difference(pair.surfaces);
+         (is_whole && leaves_difference(pair.surfaces));
 }
 
 }  // namespace
@@ -207,10 +210,11 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
   };
   RegisteredPair result;
   result.surfaces = survey(coarse, result.correction);
-  const Registering registering = {scans.after, extent, coarse, small};
+  Registering registering = {scans.after, extent, coarse, small, {}};
+  registering.options.left_out = scans.left_out;
   try {
     registering.align_again(result);
-    if (could_be_elsewhere(result)) registering.look_farther(result);
+    if (could_be_elsewhere(result, !scans.left_out)) registering.look_farther(result);
   } catch (const TooFewCells& few) {
     throw few.of_scans(name_of(scans.before) + ", " + name_of(scans.after));
   }

@@ -104,6 +104,10 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, Gro
   SurveyedEvent result;
   const bool is_apart = event.dug && event.options.dug_path && !event.base.is_origin();
   SiteEvent in_site = event;
+  if (is_apart && event.options.dug_path->start_x) {
+    in_site.options.worked_area =
+        moved(worked_area(*event.options.dug_path), event.base.site_from_machine());
+  }
   if (is_apart) in_site.options.dug_path = std::nullopt;
   if (is_apart) in_site.options.joint_work = std::nullopt;
   DensityEstimate estimate = estimate_in(in_site, settings, ground);

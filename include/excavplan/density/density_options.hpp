@@ -42,6 +42,10 @@ struct DugPath {
   std::optional<double> start_z = {};  ///< and how high; else by the scan before [m]
 };
 
+/// The ground that the dig can have changed: the bucket's way with a metre (ours) around it.
+/// @throws Error (bad_input) without a start
+Rectangle worked_area(const DugPath& dug);
+
 /// Settings of estimate_density().
 struct DensityOptions {
   VolumeMethod method = VolumeMethod::surface;  ///< how volumes are found
@@ -58,6 +62,9 @@ struct DensityOptions {
   /// The ground before as it is known, in the site frame of the scans: k is then of the bank alone
   /// (docs/methods.md#known-ground).
   std::optional<GroundState> ground;
+  /// Where the machine worked, which does not register the scans; else about `dug_path`. For
+  /// `ground`.
+  std::optional<Rectangle> worked_area = {};
   double scan_time = 0.0;             ///< of the scan after, since 1970-01-01 UTC, for `ground` [s]
   std::optional<PriorDensity> prior;  ///< by digs before this one in the same soil
   unsigned threads = 0;               ///< 0: one per core; the result is the same for any number

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -53,6 +54,8 @@ struct AlignmentOptions {
   double shift_prior = 0.020;     ///< sd of each translation [m], > 0
   double turn_prior = 0.0052360;  ///< sd of each rotation (0.3 degrees) [rad], > 0
   double steepest = 1.0;  ///< cells of a larger gradient (walls, edges) are not used [-], > 0
+  /// Ground that changed: not used, unless it is more than nine tenths (ours) of all.
+  std::optional<Rectangle> left_out = {};
 };
 
 /// Finds the motion of the after surface on the ground that did not change.

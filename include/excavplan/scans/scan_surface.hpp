@@ -120,8 +120,9 @@ std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Recta
 
 /// Two scans of one piece of ground.
 struct ScanPair {
-  Scan before;  ///< the dig
-  Scan after;   ///< the dig
+  Scan before;                             ///< the dig
+  Scan after;                              ///< the dig
+  std::optional<Rectangle> left_out = {};  ///< of their registration: AlignmentOptions
 };
 
 /// Surfaces of a pair of scans, for measure_change().
