@@ -140,12 +140,12 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
 }
 
 /// The path that was dug, on the ground before it.
-DigPath path_of(const DugPath& dug, const HeightMap& before, const DigPathOptions& rules = {}) {
+DigPath path_of(const DugPath& dug, const HeightMap& before) {
   const GroundProfile profile = profile_under_bucket(before, dug.machine);
   const double lifted = dug.start_z ? *dug.start_z - profile(*dug.start_x) : 0.0;
   const auto path = make_dig_path(
-      dug.machine, dug.parameters, *dug.start_x, [&](double x) { return profile(x) + lifted; },
-      rules);
+      machine_for_planned_path(dug.machine), dug.parameters, *dug.start_x,
+      [&](double x) { return profile(x) + lifted; }, rules_for_planned_path());
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
   }
@@ -202,7 +202,7 @@ SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOp
   std::optional<Warning> doubt;
   if (options.dug_path && options.dug_path->start_x) {
     const Machine& machine = options.dug_path->machine;
-    const DigPath path = path_of(*options.dug_path, before, rules_for_planned_path());
+    const DigPath path = path_of(*options.dug_path, before);
     add_cut(path, machine, before, *volumes.known);
     if (!told.dig_area) told.dig_area = around(swept_strip(machine, path));
     volumes.change = change_of(surfaces, &*volumes.known, told);

@@ -479,17 +479,26 @@ class DrivableStarts {
   double widest_ = 0.0;
 };
 
+constexpr double replanned_angle = 0.01;  // ours [rad]
+
 }  // namespace
 
 DigPathOptions rules_for_planned_path() {
-  constexpr double angle = 0.01;   // [rad]
   constexpr double length = 0.02;  // [m]
   DigPathOptions rules;
-  rules.min_heel_clearance -= angle;
+  rules.min_heel_clearance -= replanned_angle;
   rules.track_margin -= length;
   rules.max_depth += length;
   rules.lift_clearance -= length;
   return rules;
+}
+
+Machine machine_for_planned_path(Machine machine) {
+  for (JointLimits& joint : machine.limits) {
+    joint.lower -= replanned_angle;
+    joint.upper += replanned_angle;
+  }
+  return machine;
 }
 
 const char* name(DigPhase phase) {

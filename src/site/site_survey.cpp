@@ -98,6 +98,25 @@ GroundState first_ground(const Scan& scan, double time, const SiteSettings& sett
   return ground;
 }
 
+/// Takes in what no scan showed before.
+void add_new_ground(const Scan& scan, double time, GroundState& ground) {
+  const HeightMap grid = ground.terrain.bank;
+  if (!grid.z.isNaN().any()) return;
+  const HeightMap seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain.bank;
+  auto is_new = (grid.z.isNaN() && !seen.z.isNaN()).eval();
+  if (ground.terrain.obstacles.size() > 0) is_new = is_new && ground.terrain.obstacles.isNaN();
+  ground.terrain.bank.z = is_new.select(seen.z, grid.z);
+  ground.terrain.loose = is_new.select(0.0, ground.terrain.loose).eval();
+  ground.seen = is_new.select(time, ground.seen).eval();
+  ground.deviation = is_new.select(first_sd, ground.deviation).eval();
+}
+
+Scan registered(Scan scan, const DensityEstimate& estimate) {
+  if (estimate.registration)
+    scan.site_from_scan = estimate.registration->correction * scan.site_from_scan;
+  return scan;
+}
+
 SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, GroundState ground) {
   const Rectangle extent = extent_of(event.scan, event.options.threads);
   ground = grown(ground, extent, settings.soil.void_ratio_loose);
@@ -114,6 +133,7 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, Gro
   result.fits = fits_ground(estimate);
   if (result.fits) {
     result.ground = std::move(*estimate.ground_after);
+    add_new_ground(registered(event.scan, estimate), event.time, result.ground);
     if (is_apart) estimate = estimate_at_machine(event, settings, ground);
   } else {
     result.ground = std::move(ground);

@@ -110,7 +110,8 @@ void place_heap(const GivenGround& given, SceneOptions& options, Outcome& outcom
 Outcome work(const Inputs& inputs, Console& console) {
   SceneOptions options = options_of(inputs, console);
   check_scans(inputs.files.scans);
-  const Machine machine = machine_named(inputs.machine);
+  Machine machine = machine_named(inputs.machine);
+  if (inputs.path_from) machine = machine_for_planned_path(std::move(machine));
   const SoilKind soil = soil_named(inputs.soil);
   Outcome outcome;
   const auto given = given_ground(inputs.ground, machine, soil, inputs.density);

@@ -54,7 +54,9 @@ struct AlignmentOptions {
   double shift_prior = 0.020;     ///< sd of each translation [m], > 0
   double turn_prior = 0.0052360;  ///< sd of each rotation (0.3 degrees) [rad], > 0
   double steepest = 1.0;  ///< cells of a larger gradient (walls, edges) are not used [-], > 0
-  /// Ground that changed: not used, unless it is more than nine tenths (ours) of all.
+  /// Of ground that was known: where the machine worked. Not used, nor is ground about a change;
+  /// shift and turn in plan then need relief that agrees on all sides
+  /// (`docs/methods.md#known-ground`).
   std::optional<Rectangle> left_out = {};
 };
 

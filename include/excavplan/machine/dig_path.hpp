@@ -90,6 +90,8 @@ struct DigPathOptions {
 /// are often at the limit of the distances above, and the other ground may lie some millimetres
 /// off: the limits are relaxed by 0.01 rad and 0.02 m; ours.
 DigPathOptions rules_for_planned_path();
+/// Likewise the machine of such a path: boom, arm and bucket may go 0.01 rad beyond their limits.
+Machine machine_for_planned_path(Machine machine);
 
 /// Lays out penetration, drag, scoop and lift, and solves the joints of every pose in closed form.
 ///
