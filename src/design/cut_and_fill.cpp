@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include <excavplan/base/error.hpp>
 
@@ -39,12 +42,13 @@ struct CellSums {
         height(area),
         steep(Mask::Constant(area.rows(), area.cols(), false)) {}
 
-  ArrayXXd area;    // [m^2]
-  ArrayXXd above;   // of ground over the design [m^3]
-  ArrayXXd below;   // missing below it [m^3]
-  ArrayXXd height;  // integral of the design's [m^3]
-  Mask steep;       // has a part of a steep face
-  double whole_area = 0.0;
+  ArrayXXd area;             // [m^2]
+  ArrayXXd above;            // of ground over the design [m^3]
+  ArrayXXd below;            // missing below it [m^3]
+  ArrayXXd height;           // integral of the design's [m^3]
+  Mask steep;                // has a part of a steep face
+  double whole_area = 0.0;   // of the design
+  double placed_area = 0.0;  // of it, on the grid
 };
 
 double slope_of(const Piece& face) {
@@ -70,13 +74,15 @@ class Comparison {
  private:
   void add(Cell at, const Piece& part, bool is_steep) {
     const double ground = ground_.z(at.row, at.col);
+    const PieceSum sum = sum_of(part);
+    sums_.placed_area += sum.area;
     if (std::isnan(ground)) return;
     if (is_steep) sums_.steep(at.row, at.col) = true;
     const double lowest = part.lowest(2), highest = part.highest(2);
     if (highest <= ground) {
-      add_cut(at, sum_of(part), ground);
+      add_cut(at, sum, ground);
     } else if (lowest >= ground) {
-      add_fill(at, sum_of(part), ground);
+      add_fill(at, sum, ground);
     } else {
       const Piece under = part_of(part, 2, ground, 1.0);
       const Piece over = part_of(part, 2, ground, -1.0);
@@ -115,17 +121,20 @@ void require_options(const CutOptions& options) {
 
 /// Unknown cells under the design, filled from around.
 struct FilledGround {
-  HeightMap map;
+  std::optional<HeightMap> map;  ///< none if there are none
   Mask unseen;
 };
-FilledGround filled_under(const ArrayXXd& share, const HeightMap& ground) {
-  FilledGround filled = {ground, ground.z.isNaN() && share > 0.0};
+FilledGround filled_under(const DesignSurface& design, const HeightMap& ground) {
+  FilledGround filled = {std::nullopt, ground.z.isNaN()};
+  if (!filled.unseen.any()) return filled;
+  filled.unseen = filled.unseen && cover_of(design, ground).share > 0.0;
+  if (!filled.unseen.any()) return filled;
   std::vector<Cell> unknown;
   for_each_cell(ground.z, [&](Cell at) {
     if (std::isnan(ground.z(at.row, at.col))) unknown.push_back(at);
   });
-  if (unknown.empty() || !filled.unseen.any()) return filled;
-  fill(filled.map.z, unknown, Filling::membrane);
+  filled.map = ground;
+  fill(filled.map->z, unknown, Filling::membrane);
   return filled;
 }
 
@@ -260,14 +269,12 @@ CutAndFill cut_and_fill(const DesignSurface& design, const Surface& ground,
   require_surface(ground, "cut: ground");
   require_options(options);
   require_placement(design, ground.height, options.least_known_share);
-  const DesignCover cover = cover_of(design, ground.height);
-  const FilledGround filled = filled_under(cover.share, ground.height);
-  const Comparison comparison(design, filled.map, options.steepest);
+  const FilledGround filled = filled_under(design, ground.height);
+  const Comparison comparison(design, filled.map ? *filled.map : ground.height, options.steepest);
   const CellSums& sums = comparison.sums();
   require_one_layer(sums, ground.height, design);
   CutAndFill result;
-  const double cell = ground.height.cell_size * ground.height.cell_size;
-  result.outside_area = std::max(0.0, sums.whole_area - cell * cover.share.sum());
+  result.outside_area = std::max(0.0, sums.whole_area - sums.placed_area);
   if (result.outside_area < 1e-9 * sums.whole_area) result.outside_area = 0.0;
   add_volumes(sums, ground, filled.unseen, options.errors, result);
   result.deviation = deviation_of(sums, ground.height, options);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/LU>
+
 #include <excavplan/base/error.hpp>
 #include <excavplan/clouds/raster_file.hpp>
 

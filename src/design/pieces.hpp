@@ -55,6 +55,13 @@ inline Piece part_of(const Piece& piece, Eigen::Index axis, double limit, double
   return part;
 }
 
+/// The part between two planes across an axis.
+inline Piece part_between(const Piece& piece, Eigen::Index axis, double low, double high) {
+  const Piece below = piece.highest(axis) > high ? part_of(piece, axis, high, 1.0) : piece;
+  const bool is_inside = below.is_empty() || below.lowest(axis) >= low;
+  return is_inside ? below : part_of(below, axis, low, -1.0);
+}
+
 /// Area in plan, and the integral of the heights over it.
 struct PieceSum {
   double area = 0.0;    ///< [m^2], >= 0
@@ -123,13 +130,13 @@ void for_each_part(const Piece& face, const HeightMap& grid, Visit visit) {
   for (Eigen::Index row = rows.first; row < rows.end; ++row) {
     const double low = cell * static_cast<double>(row);
     const double high = cell * static_cast<double>(row + 1);
-    const Piece strip = part_of(part_of(face, 1, high, 1.0), 1, low, -1.0);
+    const Piece strip = part_between(face, 1, low, high);
     if (strip.is_empty()) continue;
     const CellRange cols(strip, 0, cell, grid.z.cols());
     for (Eigen::Index col = cols.first; col < cols.end; ++col) {
       const double left = cell * static_cast<double>(col);
       const double right = cell * static_cast<double>(col + 1);
-      const Piece part = part_of(part_of(strip, 0, right, 1.0), 0, left, -1.0);
+      const Piece part = part_between(strip, 0, left, right);
       if (!part.is_empty()) visit(Cell{row, col}, part);
     }
   }
