@@ -4,6 +4,7 @@
 #include <array>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/design/design_file.hpp>
 
 #include "base/text.hpp"
 #include "design/dxf_drawing.hpp"

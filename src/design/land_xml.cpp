@@ -10,6 +10,7 @@
 #include <expat.h>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/design/design_file.hpp>
 
 #include "base/read_double.hpp"
 #include "base/text.hpp"

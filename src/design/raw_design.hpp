@@ -10,11 +10,11 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/design/design_file.hpp>
-
 /// @file Readers of design files, one of each format. Private to the library.
 
 namespace excavplan {
+
+struct DesignFileOptions;
 
 /// The triangles of a file, x to the east and y to the north, in the units of the file.
 struct RawDesign {

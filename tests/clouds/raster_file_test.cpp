@@ -89,7 +89,9 @@ class SmallTiff {
     add(std::uint16_t{42}, file);
     std::uint32_t values = 8 + static_cast<std::uint32_t>(image.size() + image.size() % 2);
     std::uint32_t directory = values;
-    for (const Field& field : fields_) directory += field.bytes.size() > 4 ? field.bytes.size() : 0;
+    for (const Field& field : fields_) {
+      if (field.bytes.size() > 4) directory += static_cast<std::uint32_t>(field.bytes.size());
+    }
     add(directory, file);
     file += image + string(image.size() % 2, '\0');
     string entries;
