@@ -712,7 +712,7 @@ TEST(BadText, IsNotACloud) {
       {string("II*\0\x08\0\0\0", 8), "byte 8: beyond the end of the file, which has 8 bytes"},
       {string("MM\0*\0\0\0\x08", 8), "byte 8: beyond the end of the file"},
       {string("II+\0\x08\0\0\0", 8), "byte 8: beyond the end of the file"},
-      {"ncols 4\nnrows 3\n", "line 2: cellsize is missing in the head"},
+      {"ncols 4\nnrows 3\n", "line 3: cellsize is missing in the head"},
       {"<?xml version=\"1.0\"?>\n<!-- of a survey -->\n<LandXML version=\"1.2\">\n",
        "byte 0: found a LandXML file, expected a cloud"},
       {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<gml>\n", "found an XML file"},
