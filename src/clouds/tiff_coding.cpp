@@ -21,16 +21,16 @@ using Unpacked = std::optional<std::string>;
 Unpacked of_pack_bits(std::string_view packed, std::size_t count) {
   std::string bytes;
   while (bytes.size() < count && !packed.empty()) {
-    const int head = static_cast<signed char>(packed.front());
+    const std::size_t head = static_cast<unsigned char>(packed.front());
     packed.remove_prefix(1);
-    if (head >= 0) {
-      const std::size_t length = static_cast<std::size_t>(head) + 1;
+    if (head < 128) {
+      const std::size_t length = head + 1;
       if (length > packed.size()) return std::nullopt;
       bytes += packed.substr(0, length);
       packed.remove_prefix(length);
-    } else if (head != -128) {
+    } else if (head > 128) {
       if (packed.empty()) return std::nullopt;
-      bytes.append(static_cast<std::size_t>(1 - head), packed.front());
+      bytes.append(257 - head, packed.front());
       packed.remove_prefix(1);
     }
   }

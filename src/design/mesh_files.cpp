@@ -175,7 +175,7 @@ RawDesign read_stl(const std::string& path) {
   } else {
     read_text_stl(file, raw);
   }
-  raw.notes.push_back("STL holds numbers of 32 bits: 6 cm at coordinates of 10^6");
+  raw.notes.emplace_back("STL holds numbers of 32 bits: 6 cm at coordinates of 10^6");
   return raw;
 }
 
