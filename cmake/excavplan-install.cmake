@@ -48,7 +48,10 @@ excavplan_install(planning
   REQUIRES_PUBLIC eigen3 REQUIRES nlopt LINKS -lpthread -ldl)
 excavplan_install(clouds
   SUMMARY "Point clouds in and out, height maps, terrain and efficiency from them"
-  REQUIRES_PUBLIC excavplan-planning)
+  REQUIRES_PUBLIC excavplan-planning REQUIRES zlib)
+excavplan_install(design
+  SUMMARY "Design surfaces of jobs, their cut and fill"
+  REQUIRES_PUBLIC excavplan-clouds REQUIRES expat)
 get_target_property(recordings_links excavplan_recordings EXCAVPLAN_LINKS)
 if(NOT recordings_links)
   set(recordings_links "")

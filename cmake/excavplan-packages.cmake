@@ -42,7 +42,7 @@ endif()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcavplan-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "excavplan (= ${PROJECT_VERSION}), "  # data
-  "libeigen3-dev, libnlopt-dev, libnlopt-cxx-dev, libpng-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, "
+  "libeigen3-dev, libnlopt-dev, libnlopt-cxx-dev, libpng-dev, zlib1g-dev, libexpat1-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, "
   "libbz2-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::figures, excavplan::paper
   "libcairo2-dev, libfontconfig-dev, libpcl-dev")

@@ -114,7 +114,7 @@ void bind_clouds(py::module_& module) {
           "The text that inspect-cloud prints with --json, but for its options.");
   module.def(
       "read_cloud", [](const File& file) { return call([&] { return read_cloud(file.path); }); },
-      arg("file"), "Reads PCD, PLY, LAS or XYZ, told by the content.");
+      arg("file"), "Reads PCD, PLY, LAS, GeoTIFF, ESRI ASCII grids or XYZ, told by the content.");
   module.def(
       "write_cloud",
       [](const File& file, const Cloud& cloud) {

@@ -9,12 +9,15 @@ namespace excavplan {
 CloudFileFormat pcd_format();  // each in a file of its own: cloud_pcd.cpp
 CloudFileFormat ply_format();
 CloudFileFormat las_format();
+CloudFileFormat geotiff_format();  // raster_file.cpp
+CloudFileFormat ascii_grid_format();
 CloudFileFormat xyz_format();
 
 const std::vector<CloudFileFormat>& cloud_file_formats() {
   // xyz last: it takes every text.
-  static const std::vector<CloudFileFormat> formats = {pcd_format(), ply_format(), las_format(),
-                                                       xyz_format()};
+  static const std::vector<CloudFileFormat> formats = {pcd_format(),        ply_format(),
+                                                       las_format(),        geotiff_format(),
+                                                       ascii_grid_format(), xyz_format()};
   return formats;
 }
 
@@ -46,8 +49,6 @@ std::optional<ForeignContent> foreign_content(FileStream& file) {
   };
   constexpr const char* name_topic =
       "; inspect-cloud FILE lists its topics, and writes one, FILE:TOPIC@TIME, as a cloud";
-  constexpr const char* as_points =
-      "; convert it by gdal_translate -of XYZ in.tif out.xyz, which gives a point a cell";
   constexpr const char* drawn =
       "; export its points as text, one x y z a line, from the program that draws it";
   constexpr Signature known[] = {
@@ -58,12 +59,6 @@ std::optional<ForeignContent> foreign_content(FileStream& file) {
       {"\x89MCAP", "a recording (MCAP)", name_topic},
       {"#ROSBAG", "a recording (ROS 1 bag)", name_topic},
       {"\x89PNG", "a PNG image", "; depth-to-cloud reads depth images"},
-      {{"II*\0", 4}, "a TIFF image", as_points},
-      {{"MM\0*", 4}, "a TIFF image", as_points},
-      {{"II+\0", 4}, "a TIFF image (BigTIFF)", as_points},
-      {{"MM\0+", 4}, "a TIFF image (BigTIFF)", as_points},
-      {"ncols", "an ASCII grid", as_points},
-      {"NCOLS", "an ASCII grid", as_points},
       {"AutoCAD Binary DXF", "a DXF drawing", drawn},
       {"AC10", "a DWG drawing", drawn},
       {"PK\x03\x04", "a ZIP archive", "; unpack it"},

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clouds/cloud_formats.hpp"
+#include "clouds/ply_mesh.hpp"
 
 // PLY 1.0 as Greg Turk describes it (Stanford, 1994), with the type names int8 ... float64 that
 // later programs write, and the names X Y Z of PDAL (io/PlyWriter.cpp, as of 2015).
@@ -51,6 +52,12 @@ constexpr std::size_t no_axis = 3;
 std::size_t axis_of(const Element& element, const Property& property) {
   if (element.name != "vertex" || property.length_type || property.name.size() != 1) return no_axis;
   return std::min(std::string(element.axes).find(property.name), no_axis);
+}
+
+/// Whether a list holds the corners of a face, by either of its names.
+bool is_face(const Element& element, const Property& property) {
+  return element.name == "face" && property.length_type &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
 ScalarType scalar_type(std::string_view name, const LineReader& lines) {
@@ -166,8 +173,9 @@ Header read_header(LineReader& lines) {
   return header;
 }
 
-/// Reads one row of text and keeps x, y and z if it is a vertex.
-Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines) {
+/// Reads one row of text, keeps x, y and z if it is a vertex and hands on the corners of a face.
+Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines,
+                              const FaceVisitor& visit_face) {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   std::string_view rest = lines.line();
   const auto next_word = [&] {
@@ -177,7 +185,13 @@ Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines) {
   };
   for (const Property& property : element.properties) {
     if (property.length_type) {
-      for (auto n = count_of(next_word(), lines); n > 0; --n) number_of(next_word(), lines);
+      const bool is_wanted = visit_face && is_face(element, property);
+      std::vector<double> corners;
+      for (auto n = count_of(next_word(), lines); n > 0; --n) {
+        const double value = number_of(next_word(), lines);
+        if (is_wanted) corners.push_back(value);
+      }
+      if (is_wanted) visit_face(corners);
       continue;
     }
     const double value = number_of(next_word(), lines);
@@ -190,7 +204,8 @@ Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines) {
   return point;
 }
 
-void stream_text(FileStream& file, LineReader& lines, const Header& header, PointSink& sink) {
+void stream_text(FileStream& file, LineReader& lines, const Header& header, const MeshSink& to) {
+  PointSink& sink = to.points;
   PointBatch batch(sink);
   for (const Element& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
@@ -204,7 +219,7 @@ void stream_text(FileStream& file, LineReader& lines, const Header& header, Poin
             "the end after " + std::to_string(i) + " rows of element " + in_quotes(element.name),
             std::to_string(element.count));
       }
-      const Eigen::Vector3d point = read_text_row(element, lines);
+      const Eigen::Vector3d point = read_text_row(element, lines, to.face);
       if (is_vertex) batch.add(point);
     }
   }
@@ -215,8 +230,8 @@ void stream_text(FileStream& file, LineReader& lines, const Header& header, Poin
 /// Walks over the binary part.
 class BinaryBody {
  public:
-  BinaryBody(FileStream& file, bool swapped, PointSink& sink)
-      : file_(file), swapped_(swapped), sink_(sink) {}
+  BinaryBody(FileStream& file, bool swapped, const MeshSink& to)
+      : file_(file), swapped_(swapped), sink_(to.points), visit_face_(to.face) {}
 
   void stream(const std::vector<Element>& elements) {
     for (const Element& element : elements) {
@@ -263,7 +278,7 @@ class BinaryBody {
       Eigen::Vector3d point = Eigen::Vector3d::Zero();
       for (const Property& property : element.properties) {
         if (property.length_type) {
-          skip_list(element, property);
+          take_list(element, property);
           continue;
         }
         const double value = take(property.type, element);
@@ -275,12 +290,18 @@ class BinaryBody {
     batch.hand_on();
   }
 
-  void skip_list(const Element& element, const Property& property) {
+  void take_list(const Element& element, const Property& property) {
     const double length = take(*property.length_type, element);
     if (length < 0.0) file_.fail_here("a list of negative length", "0 or more");
     const auto entries = static_cast<std::uint64_t>(length);
     require(entries, size_of(property.type), element);
-    file_.skip(entries * size_of(property.type));
+    if (!visit_face_ || !is_face(element, property)) {
+      file_.skip(entries * size_of(property.type));
+      return;
+    }
+    corners_.resize(entries);
+    for (double& corner : corners_) corner = take(property.type, element);
+    visit_face_(corners_);
   }
 
   double take(ScalarType type, const Element& element) {
@@ -293,6 +314,8 @@ class BinaryBody {
   FileStream& file_;
   bool swapped_;
   PointSink& sink_;
+  const FaceVisitor& visit_face_;
+  std::vector<double> corners_;
 };
 
 bool holds_ply(FileStream& file) {
@@ -300,18 +323,20 @@ bool holds_ply(FileStream& file) {
   return text.substr(0, 4) == "ply\n" || text == "ply\r\n";
 }
 
-CloudShape stream_ply(FileStream& file, PointSink& sink) {
+CloudShape stream(FileStream& file, const MeshSink& to) {
   LineReader lines(file);
   const Header header = read_header(lines);
   if (header.encoding == Encoding::ascii) {
-    stream_text(file, lines, header, sink);
+    stream_text(file, lines, header, to);
   } else {
-    BinaryBody(file, header.encoding == Encoding::big_endian, sink).stream(header.elements);
+    BinaryBody(file, header.encoding == Encoding::big_endian, to).stream(header.elements);
   }
   const auto vertices = std::find_if(header.elements.begin(), header.elements.end(),
                                      [](const Element& e) { return e.name == "vertex"; });
   return {vertices->count, 1};
 }
+
+CloudShape stream_ply(FileStream& file, PointSink& sink) { return stream(file, {sink, nullptr}); }
 
 std::string head_of_ply(const CloudShape& shape, Numbers numbers) {
   const std::string encoding = numbers == Numbers::text ? "ascii" : "binary_little_endian";
@@ -322,6 +347,9 @@ std::string head_of_ply(const CloudShape& shape, Numbers numbers) {
 }
 
 }  // namespace
+
+bool is_ply(FileStream& file) { return holds_ply(file); }
+void stream_ply_mesh(FileStream& file, const MeshSink& to) { stream(file, to); }
 
 CloudFileFormat ply_format() {
   return {"ply", "PLY", {".ply"}, holds_ply, stream_ply, head_of_ply};

@@ -14,14 +14,6 @@ namespace {
 constexpr const char* geographic = "geographic coordinates (degrees of longitude and latitude)";
 constexpr const char* geocentric = "geocentric coordinates (from the centre of the Earth)";
 
-/// The units of length of EPSG that GeoTIFF names [m].
-std::optional<double> length_of_code(unsigned code) {
-  if (code == 9001) return 1.0;              // metre
-  if (code == 9002) return 0.3048;           // foot
-  if (code == 9003) return 1200.0 / 3937.0;  // US survey foot
-  return std::nullopt;
-}
-
 /// The node of well-known text that begins with one of these keywords, up to its closing bracket;
 /// empty if there is none.
 std::string_view node_of(std::string_view text, std::initializer_list<std::string_view> keywords) {
@@ -52,6 +44,13 @@ std::optional<double> unit_of(std::string_view node) {
 
 }  // namespace
 
+std::optional<double> length_of_epsg(unsigned code) {
+  if (code == 9001) return 1.0;              // metre
+  if (code == 9002) return 0.3048;           // foot
+  if (code == 9003) return 1200.0 / 3937.0;  // US survey foot
+  return std::nullopt;
+}
+
 LasSystem system_of_geokeys(std::string_view record) {
   constexpr std::size_t entry_size = 8;  // four uint16: key, where its value is, count, value
   const auto number = [&](std::size_t at) {
@@ -65,8 +64,8 @@ LasSystem system_of_geokeys(std::string_view record) {
     if (!is_here) continue;
     if (key == 1024 && value == 2) system.not_plane = geographic;
     if (key == 1024 && value == 3) system.not_plane = geocentric;
-    if (key == 3076) system.plan_unit = length_of_code(value);
-    if (key == 4099) system.up_unit = length_of_code(value);
+    if (key == 3076) system.plan_unit = length_of_epsg(value);
+    if (key == 4099) system.up_unit = length_of_epsg(value);
   }
   return system;
 }

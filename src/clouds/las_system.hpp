@@ -21,6 +21,9 @@ struct LasSystem {
 /// From a GeoKeyDirectoryTag (OGC 19-008r4, GeoTIFF 1.1): keys 1024, 3076 and 4099.
 LasSystem system_of_geokeys(std::string_view record);
 
+/// The units of length of EPSG that GeoTIFF names [m].
+std::optional<double> length_of_epsg(unsigned code);
+
 /// From well-known text (OGC 01-009 and ISO 19162).
 LasSystem system_of_wkt(std::string_view record);
 

@@ -696,22 +696,23 @@ TEST(BadText, IsNotACloud) {
       {"{\"points\": []}\n", "line 1: found '{\"points\": []}'"},
       {string("1\0 2\0 3\0", 8), "byte 1: found the byte 0, expected a cloud as PCD, PLY, LAS"},
       {"ASTM-E57\x01",
-       "byte 0: found an E57 file, expected a cloud as PCD, PLY, LAS or XYZ text; convert it by "
+       "byte 0: found an E57 file, expected a cloud as PCD, PLY, LAS, GeoTIFF, ESRI ASCII "
+       "grid or XYZ text; convert it by "
        "pdal "
        "translate in.e57 out.las, or CloudCompare -SILENT -O in.e57"},
       {"SQLite format 3",
-       "found a recording (ROS 2 bag) or another database, expected a cloud as PCD, PLY, LAS or "
-       "XYZ text; inspect-cloud FILE lists its topics, and writes one, FILE:TOPIC@TIME, as a "
+       "found a recording (ROS 2 bag) or another database, expected a cloud as PCD, PLY, LAS, "
+       "GeoTIFF, "
+       "ESRI ASCII grid or XYZ text; inspect-cloud FILE lists its topics, and writes one, "
+       "FILE:TOPIC@TIME, as a "
        "cloud"},
       {"\x89MCAP0\r\n", "found a recording (MCAP)"},
       {"#ROSBAG V2.0\n", "found a recording (ROS 1 bag)"},
       {"\x89PNG\r\n\x1a\n", "found a PNG image"},
-      {string("II*\0\x08\0\0\0", 8),
-       "found a TIFF image, expected a cloud as PCD, PLY, LAS or XYZ "
-       "text; convert it by gdal_translate -of XYZ"},
-      {string("MM\0*\0\0\0\x08", 8), "found a TIFF image"},
-      {string("II+\0\x08\0\0\0", 8), "found a TIFF image (BigTIFF)"},
-      {"ncols 4\nnrows 3\n", "found an ASCII grid"},
+      {string("II*\0\x08\0\0\0", 8), "byte 8: beyond the end of the file, which has 8 bytes"},
+      {string("MM\0*\0\0\0\x08", 8), "byte 8: beyond the end of the file"},
+      {string("II+\0\x08\0\0\0", 8), "byte 8: beyond the end of the file"},
+      {"ncols 4\nnrows 3\n", "line 3: cellsize is missing in the head"},
       {"<?xml version=\"1.0\"?>\n<!-- of a survey -->\n<LandXML version=\"1.2\">\n",
        "byte 0: found a LandXML file, expected a cloud"},
       {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<gml>\n", "found an XML file"},

@@ -31,7 +31,8 @@ struct Inputs {
 
 const About about = {
     "inspect-cloud",
-    "Summarises a scan (PCD, PLY, LAS or XYZ text, detected from the content), and converts it to "
+    "Summarises a scan (PCD, PLY, LAS, GeoTIFF, ASCII grid or XYZ text, detected from the "
+    "content), and converts it to "
     "another format or frame. Lists what a recording holds (rosbag2, MCAP, ROS 1 bag).",
     {{"inspect-cloud scan.pcd", "points, extent, point density and a guess of the frame"},
      {"inspect-cloud run.db3", "topics, frames and times of a recording"},
