@@ -107,7 +107,9 @@ class Dig {
           [&](double level) { return room_in_bucket(std::max(ahead, level) - s.to.y(), before); });
   }
 
+  /// The heel may stand far behind where the path begins.
   void press(const Resistance::Pressed& heel) {
+    ground_.cover({swath_.first_row(), swath_.end_row(), heel.col, heel.col + 1});
     for (Index row = swath_.first_row(); row < swath_.end_row(); ++row) {
       ground_.compact(ground_.at(row, heel.col), heel.pressure);
     }
