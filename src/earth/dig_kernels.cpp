@@ -27,9 +27,10 @@ inline double height_at(const ProfileSide& side, double x) {
 }  // namespace
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
-std::size_t find_bases(const PileLine& line, std::size_t count, const double* __restrict height,
-                       const double* __restrict across, double* __restrict distance,
-                       double* __restrict base) {
+std::size_t find_bases(const PileLine& line, double* __restrict distance, double* __restrict base) {
+  const double* __restrict height = line.height;
+  const double* __restrict across = line.across;
+  const std::size_t count = line.count;
   const double along = line.along;
   const double along_square = along * along;
   const double reach = line.reach;
@@ -60,8 +61,13 @@ std::size_t find_bases(const PileLine& line, std::size_t count, const double* __
 }
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
-void raise_to(double top, double part, std::size_t count, const double* __restrict base,
-              const double* __restrict bank, double* __restrict loose, double* __restrict height) {
+void raise_to(const PileShare& pile, const double* __restrict base, const CellLayers& cells) {
+  const double top = pile.top;
+  const double part = pile.part;
+  const double* __restrict bank = cells.bank;
+  double* __restrict loose = cells.loose;
+  double* __restrict height = cells.height;
+  const std::size_t count = cells.count;
   for (std::size_t i = 0; i < count; ++i) {
     loose[i] += part * (top - base[i]);
     height[i] = bank[i] + loose[i];
@@ -98,7 +104,7 @@ void close_slices(const ProfileSide& mouth, const SliceBounds& slices, double* _
     const double bottom = std::min(low[i], below);
     const double top = std::max(high[i], above);
     lid[i] = above > high[i] ? 0.0 : 1.0;
-    open[i] = (top > bottom) & !opens_below ? 1.0 : 0.0;
+    open[i] = ((top > bottom) & !opens_below) ? 1.0 : 0.0;
     low[i] = bottom;
     high[i] = top;
   }
@@ -153,16 +159,19 @@ inline double mean_above(double height, double z0, double z1) {
   const double b = height - z1;
   const double positive = std::max(a, b);
   const double in_part = 0.5 * positive * positive / std::abs(a - b);
-  const double below = (a <= 0.0) & (b <= 0.0) ? 0.0 : in_part;
-  return (a >= 0.0) & (b >= 0.0) ? 0.5 * (a + b) : below;
+  const double below = ((a <= 0.0) & (b <= 0.0)) ? 0.0 : in_part;
+  return ((a >= 0.0) & (b >= 0.0)) ? 0.5 * (a + b) : below;
 }
 
 }  // namespace
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
-void cut_cells(const CutLine& line, std::size_t count, const double* __restrict top,
-               const double* __restrict lying, const double* __restrict cover,
-               double* __restrict bank, double* __restrict loose) {
+void cut_cells(const CutLine& line, const CutColumn& column, double* __restrict bank,
+               double* __restrict loose) {
+  const double* __restrict top = column.top;
+  const double* __restrict lying = column.lying;
+  const double* __restrict cover = column.cover;
+  const std::size_t count = column.count;
   const CutLine l = line;
   for (std::size_t i = 0; i < count; ++i) {
     const double covered = l.share * cover[i];

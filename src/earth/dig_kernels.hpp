@@ -17,18 +17,30 @@ struct PileLine {
   double reach = 0.0;    ///< from the level top, up to which soil is sought [m]
   double slope = 0.0;    ///< of the pile
   double seen_to = 0.0;  ///< top of the pile [m]
+  std::size_t count = 0;
+  const double* height = nullptr;  ///< of the cells
+  const double* across = nullptr;  ///< of the cells beyond the sides of the bucket, >= 0 [m]
 };
 /// For each cell its distance from the level top and the level of the top from which on it is
 /// covered; that is infinite where it is out of reach or above `seen_to`.
-/// @param across  beyond the sides of the bucket, >= 0 [m]
 /// @return number of the cells that can be covered
-std::size_t find_bases(const PileLine& line, std::size_t count, const double* height,
-                       const double* across, double* distance, double* base);
+std::size_t find_bases(const PileLine& line, double* distance, double* base);
 
-/// Adds to the loose layer of cells what lies between their bases and the top of the pile, times
-/// `part`. All bases are below the top.
-void raise_to(double top, double part, std::size_t count, const double* base, const double* bank,
-              double* loose, double* height);
+/// Cells in succession.
+struct CellLayers {
+  std::size_t count = 0;
+  const double* bank = nullptr;
+  double* loose = nullptr;
+  double* height = nullptr;
+};
+/// A share of a pile with its top at this level.
+struct PileShare {
+  double top = 0.0;
+  double part = 0.0;
+};
+/// Adds to the loose layer what lies between the bases of the cells and the top of the pile. All
+/// bases are below the top.
+void raise_to(const PileShare& pile, const double* base, const CellLayers& cells);
 
 /// A side of the bucket's profile, over the slices from `from` on and below `end` [m].
 struct ProfileSide {
@@ -81,11 +93,15 @@ struct CutLine {
   double ahead = 0.0;   ///< share of the column that the lip has not passed before
   double behind = 0.0;  ///< level of the line in the middle of what it has passed [m]
 };
+/// The rows of a column.
+struct CutColumn {
+  std::size_t count = 0;
+  const double* top = nullptr;    ///< of what was undisturbed before the dig [m]
+  const double* lying = nullptr;  ///< loose soil [m]
+  const double* cover = nullptr;  ///< of the row by the bucket
+};
 /// For each row what lies above the line.
-/// @param top  of what was undisturbed before the dig [m]
-/// @param cover  of the row by the bucket
-void cut_cells(const CutLine& line, std::size_t count, const double* top, const double* lying,
-               const double* cover, double* bank, double* loose);
+void cut_cells(const CutLine& line, const CutColumn& column, double* bank, double* loose);
 
 /// Adds to `sum` what was pushed up on the next column of a wedge, of which `cells` cells were left
 /// before, at most 1 of it.

@@ -226,8 +226,9 @@ void GroundWindow::raise_to(double top, double part, std::size_t cell, std::size
   }
   const std::size_t last = cell + count - 1;
   const std::size_t back = count - 1;
-  excavplan::raise_to(top, part, count, base, &layers_.bank[last] - back,
-                      &layers_.loose[last] - back, &layers_.height[last] - back);
+  excavplan::raise_to({top, part}, base,
+                      {count, &layers_.bank[last] - back, &layers_.loose[last] - back,
+                       &layers_.height[last] - back});
   std::fill_n(&layers_.awake[last] - back, count, std::uint16_t{1});
 }
 

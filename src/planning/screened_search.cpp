@@ -87,7 +87,7 @@ Found<DigSearchResult> search_screened(const Machine& machine, const SoilSimulat
   const Terrain coarse = coarser(terrain, screening.cells);
   DigSearchOptions screen = options;
   screen.rules.step *= screening.steps;
-  const Found<DigSearchResult> screened = search_dig(machine, simulator, coarse, screen);
+  Found<DigSearchResult> screened = search_dig(machine, simulator, coarse, screen);
   if (!screened && screened.stopped) return screened;
   if (screened) {
     Found<DigSearchResult> found = search_dig(machine, simulator, terrain,

@@ -169,8 +169,10 @@ class Dig {
     require_known(col, x0);
     const std::size_t cell = ground_.at(swath_.first_row(), col);
     const auto count = static_cast<std::size_t>(swath_.rows());
-    cut_cells({z0, z1, share, ahead, behind}, count, &map.z(swath_.first_row(), col),
-              ground_.looses(cell, count), swath_.covers(), cut_bank_.data(), cut_loose_.data());
+    cut_cells(
+        {z0, z1, share, ahead, behind},
+        {count, &map.z(swath_.first_row(), col), ground_.looses(cell, count), swath_.covers()},
+        cut_bank_.data(), cut_loose_.data());
     take_in(col, cell);
     ground_.lower(cell, count, cut_bank_.data(), cut_loose_.data());
     moving_.include({swath_.first_row(), swath_.end_row(), col, col + 1});

@@ -79,9 +79,9 @@ void PileAhead::look_at_column(Index col, double reach) {
   const auto count = static_cast<std::size_t>(line.end - line.first);
   looked_at_ += count;
   const std::size_t covered =
-      find_bases({along, reach, slope_, seen_to_}, count, ground_.heights(line.cell, count),
-                 across_.data() + (line.first - seen_.row_begin), distances_.data() + line.bases,
-                 bases_.data() + line.bases);
+      find_bases({along, reach, slope_, seen_to_, count, ground_.heights(line.cell, count),
+                  across_.data() + (line.first - seen_.row_begin)},
+                 distances_.data() + line.bases, bases_.data() + line.bases);
   const double passed = lip_x_ - left;
   keep(line, covered, behind ? 0.0 : passed < map.cell_size ? passed / map.cell_size : 1.0);
 }
