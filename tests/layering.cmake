@@ -6,7 +6,7 @@ cmake_minimum_required(VERSION 3.24)
 
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
-set(rooms base optimisation ground change soil belief machine simulation sensing calibration planning
+set(rooms base optimisation ground change soil belief machine earth simulation sensing calibration planning
   kit clouds design scans logs efficiency images recording density site paper experiments results maps drawing
   figures robot)
 set(base_may_use "")
@@ -16,7 +16,8 @@ set(change_may_use ground)
 set(soil_may_use ground)
 set(belief_may_use optimisation ground soil)
 set(machine_may_use "")
-set(simulation_may_use ground soil machine)
+set(earth_may_use ground soil)
+set(simulation_may_use ground soil machine earth)
 set(sensing_may_use ground change soil machine simulation)
 set(calibration_may_use ground change soil machine simulation sensing)
 set(planning_may_use optimisation ground soil machine simulation)

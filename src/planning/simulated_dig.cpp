@@ -29,9 +29,10 @@ std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
                                                const SoilSimulator& simulator,
                                                const Terrain& terrain, const DigPath& path,
                                                const CycleOptions& cycle) {
-  DigOptions unsettled;  // what slides after the bucket is out changes neither load nor energy
-  unsettled.settle = false;
-  const DigResult result = checked_dig(simulator, machine, terrain, path, unsettled);
+  DigOptions options;  // what slides after the bucket is out changes neither load nor energy
+  options.settle = false;
+  options.worth_alone = true;
+  const DigResult result = checked_dig(simulator, machine, terrain, path, options);
   if (result.stall) return DigFailure(*result.stall);
   return figures_of(result, machine, path, cycle);
 }

@@ -35,68 +35,88 @@ void Cavity::turn_to(double phi3) {
     x_min = std::min(x_min, corners_[i].x());
     x_max = std::max(x_max, corners_[i].x());
   }
-  slice_width_ = (x_max - x_min) / static_cast<double>(slices_.size());
-  for (std::size_t i = 0; i < slices_.size(); ++i) {
-    slices_[i] = Slice{};
-    slices_[i].x = x_min + (static_cast<double>(i) + 0.5) * slice_width_;
+  left_ = x_min;
+  slice_width_ = (x_max - x_min) / static_cast<double>(slice_count);
+  constexpr double none = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < slice_count; ++i) {
+    x_.data()[i] = x_min + (static_cast<double>(i) + 0.5) * slice_width_;
   }
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    cross_slices(corners_[i], corners_[(i + 1) % corners_.size()], i + 1 == corners_.size());
-  }
+  low_.fill(none);
+  high_.fill(-none);
+  for (std::size_t i = 0; i + 1 < corners_.size(); ++i) bound(corners_[i], corners_[i + 1]);
+  EachSlice open;
+  close_slices(side(corners_.back(), corners_.front()),
+               {slice_count, x_.data(), low_.data(), high_.data()}, lid_.data(), open.data());
+  keep(open);
+}
+
+ProfileSide Cavity::side(const Vector2d& a, const Vector2d& b) {
+  const double slope = (b.y() - a.y()) / (b.x() - a.x());  // unused where upright
+  return {std::min(a.x(), b.x()), std::max(a.x(), b.x()), a.x(), a.y(), slope};
 }
 
 /// Bounds the slices that a side of the profile crosses.
-void Cavity::cross_slices(const Vector2d& a, const Vector2d& b, bool mouth) {
-  const double slope = (b.y() - a.y()) / (b.x() - a.x());  // unused where upright
-  const double low = std::min(a.x(), b.x());
-  const double high = std::max(a.x(), b.x());
-  for (Slice& slice : slices_) {
-    if (!(low <= slice.x && slice.x < high)) continue;
-    const double z = a.y() + slope * (slice.x - a.x());
-    if (z < slice.low) {
-      slice.low = z;
-      slice.open_below = mouth;
+void Cavity::bound(const Vector2d& a, const Vector2d& b) {
+  const ProfileSide crossing = side(a, b);
+  if (!(crossing.from < crossing.end)) return;
+  // A slice more on each side for what is rounded.
+  const double first = std::max(0.0, (crossing.from - left_) / slice_width_ - 1.5);
+  const double end = std::min<double>(slice_count, (crossing.end - left_) / slice_width_ + 1.5);
+  const auto i = static_cast<std::size_t>(first);
+  bound_slices(crossing, {static_cast<std::size_t>(end) - i, &x_[i], &low_[i], &high_[i]});
+}
+
+/// Keeps the open slices, in their order.
+void Cavity::keep(const EachSlice& open) {
+  const double top = corners_.back().x();
+  for (std::size_t i = 0; i < slice_count; ++i) {
+    ahead_.data()[i] = std::max(0.0, x_.data()[i]);
+    short_of_top_.data()[i] = std::max(0.0, top - x_.data()[i]);
+  }
+  open_ = 0;
+  for (std::size_t i = 0; i < slice_count; ++i) {
+    if (!(open.data()[i] > 0.0)) continue;
+    if (open_ < i) {
+      for (EachSlice* each : {&low_, &high_, &lid_, &ahead_, &short_of_top_}) {
+        each->data()[open_] = each->data()[i];
+      }
     }
-    if (z > slice.high) {
-      slice.high = z;
-      slice.open_above = mouth;
-    }
+    ++open_;
   }
 }
 
-/// Sum of an area per width over the slices that are open to soil from above or from the lip, times
-/// the width [m^3].
-template <typename OfSlice>
-double Cavity::over_slices(const OfSlice& of_slice) const {
-  double height = 0.0;
-  for (const Slice& slice : slices_) {
-    if (slice.high > slice.low && !slice.open_below) height += of_slice(slice);
-  }
-  return height * slice_width_ * bucket_.width_inside;
+CavitySlices Cavity::slices() const {
+  return {open_, low_.data(), high_.data(), lid_.data(), ahead_.data(), short_of_top_.data()};
+}
+
+/// Of soil that stands so high in the slices [m^3].
+double Cavity::volume(double height) const { return height * slice_width_ * bucket_.width_inside; }
+
+CavityLoad Cavity::load(double support, const HoldingSlopes& slopes) const {
+  const double flank = 0.5 * slopes.heap * bucket_.width_inside;
+  return {support, slopes.face, slopes.heap, corners_.back().y(), flank};
 }
 
 double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
-  // Height at which the slopes of both sides meet.
-  const double flank = 0.5 * slopes.heap * bucket_.width_inside;
-  const Vector2d& top = corners_.back();
-  return over_slices([&](const Slice& slice) {
-    double surface = std::max(0.0, support) + slopes.face * std::max(0.0, slice.x);
-    if (!slice.open_above) return std::clamp(surface - slice.low, 0.0, slice.high - slice.low);
-    // The walls of the cut hold the soil beside the plates up to the level of the ground; behind
-    // the top edge the cut is open.
-    const double side = support > 0.0 ? std::max(slice.high, support) : slice.high;
-    surface = std::min(surface, top.y() + slopes.heap * std::max(0.0, top.x() - slice.x));
-    const double heap = std::max(0.0, surface - side);
-    const double mean_heap = heap < flank ? heap - 0.5 * heap * heap / flank : 0.5 * flank;
-    return std::max(0.0, std::min(surface, side) - slice.low) + mean_heap;
-  });
+  EachSlice held;
+  fill_slices(this->slices(), load(support, slopes), held.data());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < open_; ++i) sum += held.data()[i];
+  return volume(sum);
 }
 
-double Cavity::pushed_in(double level) const {
-  return over_slices([&](const Slice& slice) {
-    const double height = std::max(0.0, level - slice.low);
-    return slice.open_above ? height : std::min(height, slice.high - slice.low);
-  });
+Cavity::Room Cavity::room(double level, const HoldingSlopes& slopes) const {
+  EachSlice held;
+  EachSlice pushed;
+  fill_slices(this->slices(), load(level, slopes), held.data());
+  push_into_slices(this->slices(), level, pushed.data());
+  double held_sum = 0.0;
+  double pushed_sum = 0.0;
+  for (std::size_t i = 0; i < open_; ++i) {
+    held_sum += held.data()[i];
+    pushed_sum += pushed.data()[i];
+  }
+  return {volume(held_sum), volume(pushed_sum)};
 }
 
 Cavity::Packed Cavity::packed(double volume) const {

@@ -11,6 +11,8 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/bucket_cavity.hpp>
 
+#include "earth/dig_kernels.hpp"
+
 namespace excavplan {
 
 /// Side view of the bucket's cavity in the boom plane, relative to the tip.
@@ -23,9 +25,14 @@ class Cavity {
   /// As bucket_capacity(), in the attitude it was turned to [m^3].
   double capacity(double support, const HoldingSlopes& slopes) const;
 
-  /// How much soil that is pushed in over the lip lies in the cavity, up to `level` above the lip;
-  /// the walls of the cut hold what stands above the side plates [m^3].
-  double pushed_in(double level) const;
+  struct Room {
+    double capacity = 0.0;  ///< capacity() [m^3]
+    /// How much soil that is pushed in over the lip lies in the cavity, up to the level; the walls
+    /// of the cut hold what stands above the side plates [m^3].
+    double pushed_in = 0.0;
+  };
+  /// While the soil ahead stands up to `level` above the lip.
+  Room room(double level, const HoldingSlopes& slopes) const;
 
   /// Soil packed into the corner of floor and back, up to a line through the lip.
   struct Packed {
@@ -39,23 +46,25 @@ class Cavity {
   std::size_t corners() const { return corners_.size(); }
 
  private:
-  /// Extent of the cavity above one x. Its mouth may be the upper or the lower bound.
-  struct Slice {
-    double x = 0.0;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -std::numeric_limits<double>::infinity();
-    bool open_below = false;
-    bool open_above = false;
-  };
-  void cross_slices(const Eigen::Vector2d& a, const Eigen::Vector2d& b, bool mouth);
-  template <typename OfSlice>
-  double over_slices(const OfSlice& of_slice) const;
+  static constexpr std::size_t slice_count = 64;
+  using EachSlice = std::array<double, slice_count>;
+  static ProfileSide side(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+  void bound(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+  void keep(const EachSlice& open);
+  CavitySlices slices() const;
+  CavityLoad load(double support, const HoldingSlopes& slopes) const;
+  double volume(double height) const;
 
   const Bucket& bucket_;
   double phi3_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Eigen::Vector2d> corners_;
-  std::array<Slice, 64> slices_;
+  double left_ = 0.0;  ///< of the first slice [m]
   double slice_width_ = 0.0;
+  // Extent of the cavity above the middle x of each slice. Its mouth may be the upper or the lower
+  // bound. Once they are all known, the slices open to soil from above or from the lip come first.
+  EachSlice x_, low_, high_, lid_;
+  EachSlice ahead_, short_of_top_;  ///< as in CavitySlices
+  std::size_t open_ = 0;            ///< number of slices open to soil
 };
 
 }  // namespace excavplan

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/angles.hpp"
+#include "earth/dig_kernels.hpp"
 #include "soil/soil.hpp"
 
 namespace excavplan {
@@ -59,7 +59,7 @@ struct BucketResistance::Place {
   double slope = 0.0;  ///< of the surface ahead along the travel, as gravity sees it [rad]
   CutSoil soil;        ///< the layers' states; their depths where they are taken at the tip
 
-  double climb() const { return std::atan2(motion.y(), -motion.x()); }  ///< of the motion [rad]
+  double climb = 0.0;  ///< of the motion [rad]
 };
 
 /// The soil in the bucket.
@@ -114,35 +114,31 @@ struct BucketResistance::FaceForce {
   }
 };
 
-/// Ground above the tip in one row, and what this dig has pushed up on it [m].
-struct BucketResistance::Strip {
-  double bank = 0.0;
-  double loose = 0.0;  ///< that lay there before the dig
-  double pile = 0.0;
-
-  double depth() const { return bank + loose; }
-};
-
 double BucketResistance::floor_length() const {
   const std::vector<Vector2d>& profile = model_.machine.bucket.profile;
   return (profile[1] - profile[0]).norm();
 }
 
-double BucketResistance::bank_at(Index col) const {
-  return swath_.mean([&](Index row) { return ground_.before().bank.z(row, col); });
+const BucketResistance::Column& BucketResistance::column(Index col) {
+  const auto i = static_cast<std::size_t>(col - first_col_);  // huge where it is before the first
+  if (i >= columns_.size()) return beyond_ = look_at(col);
+  if (!columns_[i].seen) columns_[i] = look_at(col);
+  return columns_[i];
 }
 
-double BucketResistance::surface_at(Index col) const {
+BucketResistance::Column BucketResistance::look_at(Index col) const {
   const Terrain& before = ground_.before();
-  return swath_.mean([&](Index row) { return before.bank.z(row, col) + before.loose(row, col); });
+  return {true, swath_.mean([&](Index row) { return before.bank.z(row, col); }),
+          swath_.mean([&](Index row) { return before.bank.z(row, col) + before.loose(row, col); })};
 }
 
-Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double fill) const {
+Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double fill) {
   Place place;
   place.tip = 0.5 * (s.from + s.to);
   place.lip = s.from;
   place.col = swath_.column(place.tip.x());
   place.motion = s.direction();
+  place.climb = std::atan2(place.motion.y(), -place.motion.x());
   place.floor = s.at.phi3 + pi - model_.machine.beta();
   const Vector2d up = model_.machine.up();
   place.slope = surface_slope(place.col) - std::atan2(up.x(), up.y());
@@ -167,7 +163,7 @@ BucketResistance::Fill BucketResistance::fill_in(const Cavity& cavity, double vo
 
 /// Lip and teeth against the cone index, friction on both sides of the floor and of the side
 /// plates. What lies on the ground is part of it.
-Resistance BucketResistance::drive_in(const Place& place) const {
+Resistance BucketResistance::drive_in(const Place& place) {
   const double depth = surface_at(place.col) + pile_at(place) - place.tip.y();
   Resistance r;
   if (!(depth > 0.0)) return r;
@@ -187,11 +183,12 @@ Resistance BucketResistance::drive_in(const Place& place) const {
 
 /// Earthmoving equation per strip of the edge: the wedge slides up the floor, or up the soil packed
 /// on it if that is easier.
-Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) const {
+Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) {
   const double edge = model_.machine.bucket.edge_angle;
   const auto face_at = [&](double angle, bool packed) {
-    return SlidingFace{angle, std::max({angle, angle + place.climb(), edge}), packed};
+    return SlidingFace{angle, std::max({angle, angle + place.climb, edge}), packed};
   };
+  find_strips(place);
   SlidingFace face = face_at(place.floor, false);
   FaceForce force = slide(face, place, fill);
   if (fill.front > 0.0) {
@@ -208,7 +205,7 @@ Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) co
   const Vector2d& motion = place.motion;
   const Vector2d up(-motion.y(), motion.x());  // left of the motion, which is towards -x: down
   Resistance r;
-  r.edge = edge_force(cut, place.climb());
+  r.edge = edge_force(cut, place.climb);
   r.lip_force = -motion * r.edge;
   const double along = force.along + 2.0 * side_plate_area(depth, std::max(place.floor, edge)) *
                                          cut.plate_friction();
@@ -234,11 +231,11 @@ BucketResistance::FaceTerms BucketResistance::terms_of(const SoilState& soil,
 /// Each layer is pushed by its own soil: the passive pressure in it depends on its strength and on
 /// the weight of what lies above.
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Place& place,
-                                                    const Fill& fill) const {
+                                                    const Fill& fill) {
   const Layers mean = {terms_of(place.soil.bank, face, place.slope),
                        terms_of(place.soil.loose, face, place.slope)};
   FaceForce force;
-  force.fade = std::cos(std::clamp(place.climb(), 0.0, 0.5 * pi));
+  force.fade = std::cos(std::clamp(place.climb, 0.0, 0.5 * pi));
   push_strips(face, place, mean, fill.rise, force);
   const SideForces sides = side_forces(force, mean);
   force.push(sides.bank, 0.0, mean.bank);
@@ -264,21 +261,28 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
 /// The wedge row by row, each with the soil of its own cell.
 /// @param rise  of the soil in the bucket above the lip [m]
 void BucketResistance::push_strips(const SlidingFace& face, const Place& place, const Layers& mean,
-                                   double rise, FaceForce& force) const {
+                                   double rise, FaceForce& force) {
   const bool even = ground_.bank_is_even() && ground_.loose_is_even();
   const FaceTerms dug = even ? mean.loose : terms_of(model_.loose, face, place.slope);
-  std::optional<Layers> own;
-  for (Index i = 0; i < swath_.rows(); ++i) {
-    const Index row = swath_.first_row() + i;
-    const double width = swath_.cover(i) * ground_.cell_size();
-    const Strip strip = strip_at(row, place);
-    if (strip.depth() + strip.pile <= 0.0) continue;
-    if (!even) {
-      own.emplace(Layers{terms_of(ground_.bank_state(row, place.col), face, place.slope),
-                         terms_of(ground_.lying_state(row, place.col), face, place.slope)});
+  std::vector<Layers> own;  // of the rows, where they differ
+  const auto layers_of = [&](std::size_t i) -> const Layers& { return even ? mean : own[i]; };
+  for (std::size_t i = 0; i < strips_.size(); ++i) {
+    const Index row = swath_.first_row() + static_cast<Index>(i);
+    if (!even && strips_[i].empty()) {
+      own.push_back(mean);
+    } else if (!even) {
+      own.push_back({terms_of(ground_.bank_state(row, place.col), face, place.slope),
+                     terms_of(ground_.lying_state(row, place.col), face, place.slope)});
     }
-    const Layers& layers = even ? mean : *own;
-    const double pile = pile_on_wedge(row, place, strip, layers);
+    begin_piles(i, layers_of(i));
+  }
+  add_piles(place);
+  for (std::size_t i = 0; i < strips_.size(); ++i) {
+    const Strip& strip = strips_[i];
+    if (strip.empty()) continue;
+    const double width = swath_.cover(static_cast<Index>(i)) * ground_.cell_size();
+    const Layers& layers = layers_of(i);
+    const double pile = pile_on_wedge(i, layers);
     force.push(width * passive_of_bank(strip, pile, layers),
                width * layers.bank.adhesion * strip.bank, layers.bank);
     if (strip.loose > 0.0) {
@@ -368,27 +372,50 @@ double BucketResistance::shearing_force(const Strip& strip, double rise,
   return strip.bank * in_bank + strip.loose * in_loose + lifted * lift;
 }
 
-/// What was pushed up over the top of the wedge, as an even layer on all of it; what lies over the
-/// face is in the bucket, and payload. Where nothing else is cut, all of it [m].
-double BucketResistance::pile_on_wedge(Index row, const Place& place, const Strip& strip,
-                                       const Layers& layers) const {
+void BucketResistance::find_strips(const Place& place) {
+  for (std::size_t i = 0; i < strips_.size(); ++i) {
+    strips_[i] = strip_at(swath_.first_row() + static_cast<Index>(i), place);
+  }
+}
+
+/// In its first cell the wedge of a row has what lies there.
+void BucketResistance::begin_piles(std::size_t i, const Layers& layers) {
+  const Strip& strip = strips_[i];
+  const double ahead =
+      strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
+  const double cells = strip.depth() > 0.0 ? ahead / ground_.cell_size() : 0.0;
+  wedge_cells_[i] = cells;
+  piles_[i] = std::min(1.0, cells) * strip.pile;
+}
+
+/// Adds what lies on the other cells of all wedges.
+void BucketResistance::add_piles(const Place& place) {
+  const double longest = *std::max_element(wedge_cells_.begin(), wedge_cells_.end());
+  const std::size_t count = strips_.size();
+  std::size_t cell = ground_.at(swath_.first_row(), place.col);
+  Index col = place.col - 1;
+  for (double left = longest - 1.0; left > 0.0 && col >= ground_.cells().col_begin; left -= 1.0) {
+    cell -= ground_.column_step();
+    add_pile(count, ground_.looses(cell, count), &ground_.before().loose(swath_.first_row(), col),
+             wedge_cells_.data(), piles_.data());
+    --col;
+  }
+}
+
+/// What was pushed up over the top of the wedge of a row, as an even layer on all of it; what lies
+/// over the face is in the bucket, and payload. Where nothing else is cut, all of it [m].
+double BucketResistance::pile_on_wedge(std::size_t i, const Layers& layers) const {
+  const Strip& strip = strips_[i];
   if (!(strip.depth() > 0.0)) return strip.pile;
   const double ahead =
       strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
   const double over = strip.bank * layers.bank.n.cot_rake + strip.loose * layers.loose.n.cot_rake;
-  double cells = ahead / ground_.cell_size();
-  double sum = std::min(1.0, cells) * strip.pile;
-  std::size_t cell = ground_.at(row, place.col);
-  for (Index col = place.col - 1; --cells > 0.0 && col >= ground_.cells().col_begin; --col) {
-    cell -= ground_.column_step();
-    sum += std::min(1.0, cells) * std::max(0.0, ground_.loose(cell) - ground_.lying(row, col));
-  }
-  return sum * ground_.cell_size() / (ahead + over);
+  return piles_[i] * ground_.cell_size() / (ahead + over);
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
 /// footing: pressure across the outline, friction against the motion.
-void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resistance& r) const {
+void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resistance& r) {
   const double footing = bearing_settlement * floor_length();
   const double segments = std::min<double>(2.0, static_cast<double>(cavity.corners() - 1));
   constexpr double least_sunk = 1e-6;  // rounding of a floor that runs along itself [m]
@@ -436,7 +463,7 @@ double BucketResistance::swept_to(double x, std::size_t& pose) const {
 
 /// surface_at() between the centres of cells, so that slopes have no steps; -infinity where
 /// unknown.
-double BucketResistance::surface_between(double x) const {
+double BucketResistance::surface_between(double x) {
   const HeightMap& map = ground_.before().bank;
   const auto last = static_cast<double>(map.z.cols() - 1);
   const double at = std::clamp((x - map.origin.x()) / map.cell_size - 0.5, 0.0, last);
@@ -476,7 +503,7 @@ double BucketResistance::pile_at(const Place& place) const {
   return swath_.mean([&](Index row) { return pile_in(row, place); });
 }
 
-CutSoil BucketResistance::soil_above(Index col, double z) const {
+CutSoil BucketResistance::soil_above(Index col, double z) {
   CutSoil cut;
   cut.bank = ground_.bank_is_even() ? model_.bank : mean_bank(col);
   cut.loose = ground_.loose_is_even() ? model_.loose : mean_loose(col);
@@ -502,7 +529,7 @@ SoilState BucketResistance::mean_loose(Index col) const {
 }
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.
-double BucketResistance::surface_slope(Index col) const {
+double BucketResistance::surface_slope(Index col) {
   const auto reach = std::max<Index>(1, std::lround(slope_reach / ground_.cell_size()));
   const Index ahead = std::max<Index>(0, col - reach);
   if (ahead == col) return 0.0;

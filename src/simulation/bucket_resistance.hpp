@@ -12,7 +12,8 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/bucket_cavity.hpp"
-#include "simulation/ground_window.hpp"
+#include "earth/ground_window.hpp"
+#include "simulation/resistance.hpp"
 #include "simulation/soil_wedges.hpp"
 #include "simulation/swath.hpp"
 #include "soil/cut_soil.hpp"
@@ -32,56 +33,29 @@ struct HeightMapModel {
   SoilWedges wedges;
 };
 
-/// One stretch of the path: the tip goes from `from` to `to` while the joints turn by `turn`.
-struct Stretch {
-  DigPhase phase = DigPhase::penetrate;
-  std::size_t pose = 0;  ///< where it begins, in the path
-  Eigen::Vector2d from;
-  Eigen::Vector2d to;
-  JointAngles joints;  ///< half-way
-  JointAngles turn;
-  LinkPositions at;  ///< half-way
-  double length = 0.0;
-
-  Eigen::Vector2d direction() const { return (to - from) / length; }
-};
-
-/// What the soil does to the bucket: a force in the face, one at the lip, one under the heel [N].
-struct Resistance {
-  Eigen::Vector2d face_force = Eigen::Vector2d::Zero();
-  Eigen::Vector2d face_point = Eigen::Vector2d::Zero();
-  Eigen::Vector2d lip_force = Eigen::Vector2d::Zero();
-  Eigen::Vector2d heel_force = Eigen::Vector2d::Zero();
-  Eigen::Vector2d heel_point = Eigen::Vector2d::Zero();
-  double borne_weight = 0.0;  ///< of the soil that the wedge carries; the bucket carries the rest
-  double wedge_length = 0.0;  ///< of the top of the wedge that is pushed, ahead of the lip [m]
-  double edge = 0.0;          ///< part of lip_force that is of lip and teeth, against the motion
-
-  /// Where the heel stands on loose soil that can be compacted.
-  struct Pressed {
-    Eigen::Index col;
-    double pressure;  ///< [Pa]
-  };
-  std::vector<Pressed> pressed;
-
-  Eigen::Vector2d total() const { return face_force + lip_force + heel_force; }
-};
-
 /// The forces of the ground on the bucket at one stretch of a path (docs/methods.md#simulation).
 class BucketResistance {
  public:
   BucketResistance(const HeightMapModel& model, const GroundWindow& ground, const Swath& swath,
                    const DigPath& path)
-      : model_(model), ground_(ground), swath_(swath), path_(path) {}
+      : model_(model),
+        ground_(ground),
+        swath_(swath),
+        path_(path),
+        first_col_(ground.cells().col_begin),
+        columns_(static_cast<std::size_t>(ground.cells().cols())),
+        strips_(static_cast<std::size_t>(swath.rows())),
+        wedge_cells_(strips_.size()),
+        piles_(strips_.size()) {}
 
   /// `cavity` is turned as the bucket stands, half-way of the stretch, and holds `fill` [m^3].
-  Resistance at(const Stretch& stretch, const Cavity& cavity, double fill) const;
+  Resistance at(const Stretch& stretch, const Cavity& cavity, double fill);
 
   /// Length of the bucket's floor [m].
   double floor_length() const;
   /// Top of the bank in a column, and of what lay on it, mean over the width, before the dig [m].
-  double bank_at(Eigen::Index col) const;
-  double surface_at(Eigen::Index col) const;
+  double bank_at(Eigen::Index col) { return column(col).bank; }
+  double surface_at(Eigen::Index col) { return column(col).surface; }
 
  private:
   struct Place;
@@ -90,7 +64,23 @@ class BucketResistance {
   struct FaceForce;
   struct FaceTerms;
   struct Layers;
-  struct Strip;
+  /// Ground above the tip in one row, and what this dig has pushed up on it [m].
+  struct Strip {
+    double bank = 0.0;
+    double loose = 0.0;  ///< that lay there before the dig
+    double pile = 0.0;
+
+    double depth() const { return bank + loose; }
+    bool empty() const { return depth() + pile <= 0.0; }
+  };
+  /// Top of the bank in a column, and of what lay on it, mean over the width, before the dig [m].
+  struct Column {
+    bool seen = false;
+    double bank = 0.0;
+    double surface = 0.0;
+  };
+  const Column& column(Eigen::Index col);
+  Column look_at(Eigen::Index col) const;
   /// Of the wedge's side planes, as parts of the resultant on the face [N].
   struct SideForces {
     double bank = 0.0;
@@ -98,30 +88,32 @@ class BucketResistance {
   };
 
   Fill fill_in(const Cavity& cavity, double volume) const;
-  Resistance drive_in(const Place& place) const;
-  Resistance push_wedge(const Place& place, const Fill& fill) const;
+  Resistance drive_in(const Place& place);
+  Resistance push_wedge(const Place& place, const Fill& fill);
   FaceTerms terms_of(const SoilState& soil, const SlidingFace& face, double slope) const;
-  FaceForce slide(const SlidingFace& face, const Place& place, const Fill& fill) const;
+  FaceForce slide(const SlidingFace& face, const Place& place, const Fill& fill);
   void push_strips(const SlidingFace& face, const Place& place, const Layers& mean, double rise,
-                   FaceForce& force) const;
-  void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance) const;
+                   FaceForce& force);
+  void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance);
   double swept_to(double x, std::size_t& pose) const;
-  double surface_between(double x) const;
+  double surface_between(double x);
 
   Strip strip_at(Eigen::Index row, const Place& place) const;
   double pile_in(Eigen::Index row, const Place& place) const;
   double pile_at(const Place& place) const;
-  double pile_on_wedge(Eigen::Index row, const Place& place, const Strip& strip,
-                       const Layers& layers) const;
+  void find_strips(const Place& place);
+  void begin_piles(std::size_t i, const Layers& layers);
+  void add_piles(const Place& place);
+  double pile_on_wedge(std::size_t i, const Layers& layers) const;
   double passive_of_bank(const Strip& strip, double pile, const Layers& layers) const;
   double passive_of_loose(const Strip& strip, double pile, const FaceTerms& terms) const;
   static double weight_on_face(const Strip& strip, const Layers& layers);
   static SideForces side_forces(const FaceForce& mean, const Layers& layers);
   double shearing_force(const Strip& strip, double rise, const Layers& layers) const;
-  CutSoil soil_above(Eigen::Index col, double z) const;
+  CutSoil soil_above(Eigen::Index col, double z);
   SoilState mean_bank(Eigen::Index col) const;
   SoilState mean_loose(Eigen::Index col) const;
-  double surface_slope(Eigen::Index col) const;
+  double surface_slope(Eigen::Index col);
   double penetrating_area(double driven, double depth, const SoilState& soil) const;
   double driving_force(const CutSoil& cut, double driven) const;
   double edge_force(const CutSoil& cut, double climb) const;
@@ -131,6 +123,12 @@ class BucketResistance {
   const GroundWindow& ground_;
   const Swath& swath_;
   const DigPath& path_;
+  Eigen::Index first_col_;
+  std::vector<Column> columns_;      ///< from first_col_ on
+  Column beyond_;                    ///< one that is not among them
+  std::vector<Strip> strips_;        ///< of the rows of the swath, at the stretch
+  std::vector<double> wedge_cells_;  ///< length of the wedge ahead that is left, in cells
+  std::vector<double> piles_;        ///< on the wedge, so far [m]
 };
 
 }  // namespace excavplan

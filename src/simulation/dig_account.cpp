@@ -12,7 +12,7 @@
 #include "ground/map_check.hpp"
 #include "ground/terrain.hpp"
 #include "machine/plane.hpp"
-#include "simulation/slump.hpp"
+#include "earth/slump.hpp"
 
 namespace excavplan {
 namespace {
@@ -154,6 +154,7 @@ void DigAccount::close(GroundWindow& ground, double fill, double repose) {
   result.payload_mass = fill * loose.bulk_density;
   SoilLedger& ledger = result.soil;
   ledger.payload = fill;
+  if (options_.worth_alone) return;
   if (ledger.bank_cut > 0.0) ledger.fallback_fraction = ledger.fallen_back / ledger.bank_cut;
   if (options_.dump_at) pour(ground, *options_.dump_at, fill, repose);
   double lowest = ground.lowest();

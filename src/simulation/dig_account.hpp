@@ -11,7 +11,7 @@
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
-#include "simulation/ground_window.hpp"
+#include "earth/ground_window.hpp"
 
 /// @file
 /// Checks and bookkeeping that the simulators share. How soil is cut, held and heaped, and how it

@@ -11,7 +11,7 @@
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
-#include "simulation/ground_window.hpp"
+#include "earth/ground_window.hpp"
 
 /// @file
 /// What a simulator outside of the program is asked and what it answers, however it is reached.

@@ -14,11 +14,12 @@
 
 #include "base/angles.hpp"
 #include "base/text.hpp"
+#include "earth/dig_kernels.hpp"
+#include "earth/slump.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
 #include "simulation/dig_account.hpp"
 #include "simulation/pile_ahead.hpp"
-#include "simulation/slump.hpp"
 
 namespace excavplan {
 namespace {
@@ -45,7 +46,9 @@ class Dig {
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
         pile_(ground_, swath_, model.machine.bucket.width_outside, model.slopes.heap),
-        account_(model.machine, path, options) {}
+        account_(model.machine, path, options),
+        cut_bank_(static_cast<std::size_t>(swath_.rows())),
+        cut_loose_(cut_bank_.size()) {}
 
   DigResult run() {
     const std::vector<DigPose>& poses = path_.poses;
@@ -58,8 +61,7 @@ class Dig {
       result.given_up = result.energy.total > energy_worth;
     }
     come_clear(poses[reached].bucket, poses.back());
-    if (options_.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
-    sum_loose_soil(result.soil);
+    if (!options_.worth_alone) come_to_rest();
     account_.close(ground_, fill_, model_.slopes.heap);
     return std::move(result);
   }
@@ -107,7 +109,9 @@ class Dig {
           [&](double level) { return room_in_bucket(std::max(ahead, level) - s.to.y(), before); });
   }
 
+  /// The heel may stand far behind where the path begins.
   void press(const Resistance::Pressed& heel) {
+    ground_.cover({swath_.first_row(), swath_.end_row(), heel.col, heel.col + 1});
     for (Index row = swath_.first_row(); row < swath_.end_row(); ++row) {
       ground_.compact(ground_.at(row, heel.col), heel.pressure);
     }
@@ -132,9 +136,8 @@ class Dig {
   /// the lip. It gets in up to that level; what is in, `held`, stays as long as the bucket can hold
   /// it.
   double room_in_bucket(double support, double held) const {
-    const double above = std::max(0.0, support);
-    const double room = std::max(held, cavity_.pushed_in(above));
-    return std::min(room, cavity_.capacity(above, model_.slopes));
+    const Cavity::Room room = cavity_.room(std::max(0.0, support), model_.slopes);
+    return std::min(std::max(held, room.pushed_in), room.capacity);
   }
 
   // ---- soil ------------------------------------------------------------------------------------
@@ -155,16 +158,6 @@ class Dig {
     }
   }
 
-  /// Mean over an interval of max(0, height - z), z running linearly from z0 to z1.
-  static double mean_above(double height, double z0, double z1) {
-    const double a = height - z0;
-    const double b = height - z1;
-    if (a >= 0.0 && b >= 0.0) return 0.5 * (a + b);
-    if (a <= 0.0 && b <= 0.0) return 0.0;
-    const double positive = std::max(a, b);
-    return 0.5 * positive * positive / std::abs(a - b);
-  }
-
   void cut_column(Index col, double x0, double x1, double z0, double z1) {
     const HeightMap& map = ground_.before().bank;
     const double left = map.origin.x() + map.cell_size * static_cast<double>(col);
@@ -173,31 +166,41 @@ class Dig {
         (x1 - left) / map.cell_size;  // share of the cell the lip has not passed yet
     const double behind =             // the line's level in the middle of what it has passed
         z1 + 0.5 * (left + map.cell_size - x1) * (z1 - z0) / (x1 - x0);
-    const double area = map.cell_size * map.cell_size;
-    for (Index i = 0; i < swath_.rows(); ++i) {
-      const Index row = swath_.first_row() + i;
-      const std::size_t cell = ground_.at(row, col);
-      const double top = map.z(row, col);  // of what is still uncut
-      if (std::isnan(top)) {
-        throw Error(ErrorKind::bad_input,
-                    "dig: the path crosses unknown ground at x = " + number_text(x0) +
-                        " m, y = " + number_text(map.y(row)) + " m");
-      }
-      const double cover = share * swath_.cover(i);
-      const double bank = cover * mean_above(top, z0, z1);
-      // Where the lip has passed, loose soil lies only under its line; the rest is ahead.
-      const double passed = std::clamp(behind - top, 0.0, ground_.loose(row, col));
-      const double thickness = (ground_.loose(row, col) - (1.0 - ahead) * passed) / ahead;
-      const double loose =
-          std::min(ground_.loose(row, col),
-                   cover * (mean_above(top + thickness, z0, z1) - mean_above(top, z0, z1)));
-      fill_ += area * (ground_.swollen_bank(row, col, bank) + ground_.swollen_loose(cell, loose));
-      ground_.lower_bank(cell, bank);
-      ground_.lower_loose(cell, loose);
-      account_.result.soil.bank_cut += bank * area;
-      account_.result.soil.loose_cut += loose * area;
-    }
+    require_known(col, x0);
+    const std::size_t cell = ground_.at(swath_.first_row(), col);
+    const auto count = static_cast<std::size_t>(swath_.rows());
+    cut_cells(
+        {z0, z1, share, ahead, behind},
+        {count, &map.z(swath_.first_row(), col), ground_.looses(cell, count), swath_.covers()},
+        cut_bank_.data(), cut_loose_.data());
+    take_in(col, cell);
+    ground_.lower(cell, count, cut_bank_.data(), cut_loose_.data());
     moving_.include({swath_.first_row(), swath_.end_row(), col, col + 1});
+  }
+
+  void require_known(Index col, double x) const {
+    const HeightMap& map = ground_.before().bank;
+    for (Index row = swath_.first_row(); row < swath_.end_row(); ++row) {
+      if (!std::isnan(map.z(row, col))) continue;
+      throw Error(ErrorKind::bad_input,
+                  "dig: the path crosses unknown ground at x = " + number_text(x) +
+                      " m, y = " + number_text(map.y(row)) + " m");
+    }
+  }
+
+  /// What was cut in a column, of which `cell` is the first, swells into the bucket.
+  void take_in(Index col, std::size_t cell) {
+    const double area = ground_.cell_size() * ground_.cell_size();
+    SoilLedger& soil = account_.result.soil;
+    for (std::size_t i = 0; i < cut_bank_.size(); ++i) {
+      const double bank = cut_bank_[i];
+      const double loose = cut_loose_[i];
+      const Index row = swath_.first_row() + static_cast<Index>(i);
+      fill_ +=
+          area * (ground_.swollen_bank(row, col, bank) + ground_.swollen_loose(cell + i, loose));
+      soil.bank_cut += bank * area;
+      soil.loose_cut += loose * area;
+    }
   }
 
   /// What has no room in the bucket comes to lie in the pile ahead. That rises from `level`, or is
@@ -210,26 +213,26 @@ class Dig {
     level = std::max(level, top_of_pile_);
     double top = level;
     double last_left = 0.0;
-    PileAhead::Size pile;
+    double pile = 0.0;              // volume
     for (int i = 0; i < 60; ++i) {  // secants within the bounds found
       const double last_top = std::exchange(top, level);
       if (pile_.look(top)) low = -std::numeric_limits<double>::infinity();
-      pile = pile_.size(top);
-      const double left = fill_ - room(top) - pile.volume;
+      pile = pile_.volume(top);
+      const double left = fill_ - room(top) - pile;
       if (std::abs(left) < spill_error) break;
       (left > 0.0 ? low : high) = top;
       if (i > 0) gain_ = (last_left - left) / (top - last_top);
-      if (!(gain_ > 0.0)) gain_ = pile.area;
+      if (!(gain_ > 0.0)) gain_ = pile_.area(top);
       last_left = left;
       level = top + left / gain_;
       if (gain_ > 0.0 && level > low && level < high) continue;
       level = std::isinf(high) ? low + 0.1 : std::isinf(low) ? high - 0.1 : 0.5 * (low + high);
     }
-    const double spilled = std::min(fill_, pile.volume);
+    const double spilled = std::min(fill_, pile);
     if (!(spilled > 0.0)) return;
     top_of_pile_ = top;
     fill_ = fill_ - spilled > rounding ? fill_ - spilled : 0.0;
-    moving_.include(pile_.lay(top, spilled / pile.volume));
+    moving_.include(pile_.lay(top, spilled / pile));
   }
 
   // ---- energy ----------------------------------------------------------------------------------
@@ -282,6 +285,11 @@ class Dig {
     spill(level_ahead({at.x, at.z}), [&](double) { return cavity_.capacity(0.0, slopes); });
   }
 
+  void come_to_rest() {
+    if (options_.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
+    sum_loose_soil(account_.result.soil);
+  }
+
   /// Loose soil that was gained where the ground was cut, and elsewhere.
   void sum_loose_soil(SoilLedger& ledger) const {
     const Terrain& before = ground_.before();
@@ -308,6 +316,8 @@ class Dig {
   BucketResistance resistance_;
   PileAhead pile_;
   DigAccount account_;
+  std::vector<double> cut_bank_;   ///< of the rows of the column that was cut last [m]
+  std::vector<double> cut_loose_;  ///< likewise
 
   double top_of_pile_ = -std::numeric_limits<double>::infinity();  ///< lately [m]
   double gain_ = 0.0;  ///< of soil in and ahead of the bucket per rise of that, lately [m^2]

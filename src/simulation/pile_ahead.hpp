@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "simulation/ground_window.hpp"
+#include "earth/ground_window.hpp"
 #include "simulation/swath.hpp"
 
 namespace excavplan {
@@ -25,32 +25,40 @@ class PileAhead {
   /// if that is more than before.
   bool look(double top);
 
-  /// Soil between the ground and a pile with its top at this level [m^3], and by how much that
-  /// grows per metre [m^2].
-  struct Size {
-    double volume = 0.0;
-    double area = 0.0;
-  };
-  Size size(double top) const;
+  /// Soil between the ground and a pile with its top at this level [m^3].
+  double volume(double top) const;
+  /// By how much that grows per metre [m^2].
+  double area(double top) const;
 
   /// Raises the ground by this share of such a pile, 1 but for rounding; returns the cells that it
   /// is on.
   CellBlock lay(double top, double share);
 
  private:
-  /// A cell that the pile may cover.
-  struct Place {
-    std::size_t cell = 0;
-    double base = 0.0;   ///< level of the pile's top from which on it is covered [m]
-    double share = 0.0;  ///< of it that lies ahead of the lip
-  };
   struct ColumnAhead {
     Eigen::Index col = 0;
     double along = 0.0;  ///< from the level top in the direction of travel [m]
     double reach = 0.0;  ///< from the level top, up to which soil is sought [m]
   };
+  /// Cells in succession of a column that the pile may cover, of each of which the same share lies
+  /// ahead of the lip.
+  struct Run {
+    std::size_t cell = 0;   ///< the first
+    std::size_t bases = 0;  ///< where theirs begin
+    std::size_t count = 0;
+    double share = 0.0;
+  };
+  /// The rows of a column that were looked at.
+  struct Line {
+    Eigen::Index first = 0;
+    Eigen::Index end = 0;
+    std::size_t cell = 0;   ///< of the first row
+    std::size_t bases = 0;  ///< where theirs begin
+  };
+  void make_room();
   void look_at_column(Eigen::Index col, double reach);
-  void look_at_rows(Eigen::Index begin, Eigen::Index end, const ColumnAhead& column, double share);
+  void keep(const Line& line, std::size_t covered, double share_of_swath);
+  void keep_run(const Line& line, Eigen::Index begin, Eigen::Index end, double share);
 
   GroundWindow& ground_;
   const Swath& swath_;
@@ -62,7 +70,12 @@ class PileAhead {
   double foot_ = 0.0;     ///< of that pile, from its level top [m]
   CellBlock seen_;
   std::vector<double> across_;  ///< of the rows seen, beyond the sides of the bucket [m]
-  std::vector<Place> places_;
+  std::vector<Run> runs_;
+  // Of all cells looked at, column by column: the level of the pile's top from which on they are
+  // covered, and their distance from the level top. Rooms that only grow.
+  std::vector<double> bases_;
+  std::vector<double> distances_;
+  std::size_t looked_at_ = 0;
 };
 
 }  // namespace excavplan

@@ -194,7 +194,7 @@ class MapWriter {
     if (!(thickness > 0.0)) return;
     const Swath& swath = section_.swath();
     for (Index r = 0; r < swath.rows(); ++r) {
-      ground_.raise_loose(swath.first_row() + r, col, swath.cover(r) * thickness);
+      ground_.raise_loose(ground_.at(swath.first_row() + r, col), swath.cover(r) * thickness);
     }
   }
 
@@ -214,7 +214,7 @@ class MapWriter {
     const double exact = area / (sum * map_.cell_size);
     for (Index row = rows.row_begin; row < rows.row_end; ++row) {
       const double rise = exact * raised_[static_cast<std::size_t>(row - rows.row_begin)];
-      if (rise > 0.0) ground_.raise_loose(row, col, rise);
+      if (rise > 0.0) ground_.raise_loose(ground_.at(row, col), rise);
     }
   }
 

@@ -10,7 +10,7 @@
 
 #include <excavplan/ground/terrain.hpp>
 
-#include "simulation/ground_window.hpp"
+#include "earth/ground_window.hpp"
 #include "simulation/swath.hpp"
 
 /// @file

@@ -27,6 +27,8 @@ class Swath {
   Eigen::Index end_row() const { return first_row_ + cover_.size(); }
   double cover(Eigen::Index i) const { return cover_(i); }  ///< of row first_row() + i, 0 .. 1
 
+  const double* covers() const { return cover_.data(); }  ///< of all rows
+
   /// @throws Error (bad_input) if x is off the map
   Eigen::Index column(double x) const;
   /// The same, but the column at the edge of the map if x is off it.

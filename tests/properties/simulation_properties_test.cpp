@@ -10,7 +10,7 @@
 #include <Eigen/LU>
 
 #include "simulation/section_bucket.hpp"
-#include "simulation/slump.hpp"
+#include "earth/slump.hpp"
 #include "simulation/swath.hpp"
 #include "soil/earthmoving.hpp"
 #include "support/cases.hpp"

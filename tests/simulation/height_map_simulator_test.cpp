@@ -418,7 +418,7 @@ TEST_F(Simulator, TheWedgeSlidesOnPackedSoilWhereThatIsEasier) {
   const Swath swath(ground.bank, machine.bucket.width_outside);
   const GroundWindow window(ground, {soil, model.bank, model.loose},
                             {0, ground.loose.rows(), 0, ground.loose.cols()});
-  const BucketResistance resistance(model, window, swath, path);
+  BucketResistance resistance(model, window, swath, path);
   Cavity cavity(machine.bucket);
   Stretch s;
   s.phase = DigPhase::drag;

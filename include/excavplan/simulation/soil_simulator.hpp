@@ -102,7 +102,7 @@ struct DigOptions {
   bool history = false;                    ///< record the forces
   std::optional<Eigen::Vector2d> dump_at;  ///< heap the payload here; else it stays in the bucket
 
-  // For searches, which need only the efficiency of many digs. A simulator may ignore both.
+  // For searches, which need only the efficiency of many digs. A simulator may ignore all three.
 
   /// Let the ground come to rest once the bucket is out. If false, the patch, spilled and
   /// fallen_back are those of ground that still slides; payload and energy are the same.
@@ -111,6 +111,7 @@ struct DigOptions {
   /// falls, and the payload is at most what the bucket holds in its last attitude. Such a dig is
   /// `given_up`; its efficiency() is below this value, its other figures are incomplete.
   double give_up_below = 0.0;
+  bool worth_alone = false;  ///< no patch, and of the soil ledger only what was cut and payload
 };
 
 /// A simulation of one dig on one terrain: the interface of a simulator of your own.

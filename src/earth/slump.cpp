@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/slump.hpp"
+#include "earth/slump.hpp"
 
 #include <algorithm>
 #include <array>
@@ -323,7 +323,7 @@ void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double
   for (Index c = block.col_begin; c < block.col_end; ++c) {
     for (Index r = block.row_begin; r < block.row_end; ++r) {
       if (const double rise = raised(r, c, high); rise > 0.0) {
-        ground.raise_loose(r, c, exact * rise);
+        ground.raise_loose(ground.at(r, c), exact * rise);
       }
     }
   }

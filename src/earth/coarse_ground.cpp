@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/coarse_ground.hpp"
+#include "earth/coarse_ground.hpp"
 
 #include <algorithm>
 #include <cmath>

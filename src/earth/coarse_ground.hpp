@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "simulation/cell_block.hpp"
+#include "earth/cell_block.hpp"
 
 namespace excavplan {
 

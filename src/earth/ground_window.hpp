@@ -2,26 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <limits>
-#include <vector>
 
 #include <Eigen/Core>
 
 #include <excavplan/ground/terrain.hpp>
-#include <excavplan/soil/soil.hpp>
 
-#include "simulation/cell_block.hpp"
-#include "simulation/coarse_ground.hpp"
+#include "earth/cell_block.hpp"
+#include "earth/coarse_ground.hpp"
+#include "earth/ground_layers.hpp"
 
 namespace excavplan {
-
-/// The soil of a terrain where the terrain states no void ratio.
-struct GroundSoil {
-  const SoilKind& kind;
-  const SoilState& bank;
-  const SoilState& loose;
-};
 
 /// The part of a terrain on which a dig works: a copy of the cells near it that grows on demand, so
 /// that the size of the terrain does not matter. Rows and columns are those of the whole terrain.
@@ -32,6 +23,9 @@ class GroundWindow {
  public:
   /// @throws Error (bad_input) as cover()
   GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells);
+  ~GroundWindow();
+  GroundWindow(const GroundWindow&) = delete;
+  GroundWindow& operator=(const GroundWindow&) = delete;
 
   /// Makes the window hold at least these cells of the map.
   /// @throws Error (bad_input) if a loose layer is not >= 0 or a void ratio out of range there
@@ -53,13 +47,21 @@ class GroundWindow {
   }
   std::size_t column_step() const { return static_cast<std::size_t>(stride_); }
 
-  double bank(std::size_t cell) const { return bank_[cell]; }
-  double bank(Eigen::Index row, Eigen::Index col) const { return bank_[at(row, col)]; }
-  double loose(std::size_t cell) const { return loose_[cell]; }
-  double loose(Eigen::Index row, Eigen::Index col) const { return loose_[at(row, col)]; }
+  double bank(std::size_t cell) const { return layers_.bank[cell]; }
+  double bank(Eigen::Index row, Eigen::Index col) const { return layers_.bank[at(row, col)]; }
+  double loose(std::size_t cell) const { return layers_.loose[cell]; }
+  double loose(Eigen::Index row, Eigen::Index col) const { return layers_.loose[at(row, col)]; }
   /// Of the surface; NaN where no soil enters or leaves: unknown or off the map.
-  double height(std::size_t cell) const { return height_[cell]; }
-  double height(Eigen::Index row, Eigen::Index col) const { return height_[at(row, col)]; }
+  double height(std::size_t cell) const { return layers_.height[cell]; }
+  double height(Eigen::Index row, Eigen::Index col) const { return layers_.height[at(row, col)]; }
+
+  /// loose() and height() of so many cells in succession, at least one.
+  const double* looses(std::size_t cell, std::size_t count) const {
+    return &layers_.loose[cell + count - 1] - (count - 1);
+  }
+  const double* heights(std::size_t cell, std::size_t count) const {
+    return &layers_.height[cell + count - 1] - (count - 1);
+  }
 
   /// Of the bank [-].
   double bank_void_ratio(Eigen::Index row, Eigen::Index col) const;
@@ -74,38 +76,40 @@ class GroundWindow {
   /// Loose thickness of a thickness of the bank, or of the loose layer, once it has moved [m].
   double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const;
   double swollen_loose(std::size_t cell, double thickness) const {
-    return void_ratio_.empty()
+    return layers_.void_ratio.empty()
                ? thickness
-               : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + void_ratio_[cell]);
+               : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + layers_.void_ratio[cell]);
   }
 
   void lower_bank(std::size_t cell, double thickness);
+  /// Lowers both layers of so many cells in succession, as lower_bank() and lower_loose() do.
+  void lower(std::size_t cell, std::size_t count, const double* bank, const double* loose);
   /// Never below 0.
   void lower_loose(std::size_t cell, double thickness) {
-    loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
+    layers_.loose[cell] = layers_.loose[cell] > thickness ? layers_.loose[cell] - thickness : 0.0;
     changed(cell);
   }
   /// Presses on the loose layer of a cell [Pa]; without void ratios a terrain does not remember it.
   void compact(std::size_t cell, double pressure);
   /// Adds soil that has moved.
   void raise_loose(std::size_t cell, double thickness) {
-    if (!void_ratio_.empty()) mix(cell, thickness);
-    loose_[cell] += thickness;
-    height_[cell] = bank_[cell] + loose_[cell];
-    awake_[cell] = 1;
+    if (!layers_.void_ratio.empty()) mix(cell, thickness);
+    layers_.loose[cell] += thickness;
+    layers_.height[cell] = layers_.bank[cell] + layers_.loose[cell];
+    layers_.awake[cell] = 1;
   }
-  void raise_loose(Eigen::Index row, Eigen::Index col, double thickness) {
-    raise_loose(at(row, col), thickness);
-  }
+
+  /// Raises so many cells in succession as raise_to() does.
+  void raise_to(double top, double part, std::size_t cell, std::size_t count, const double* base);
 
   /// Whether a cell has changed, or one of its four neighbours has become lower, since let_sleep():
   /// a cell that is asleep is at rest.
-  bool awake(std::size_t cell) const { return awake_[cell] != 0; }
-  void let_sleep(std::size_t cell) { awake_[cell] = 0; }
+  bool awake(std::size_t cell) const { return layers_.awake[cell] != 0; }
+  void let_sleep(std::size_t cell) { layers_.awake[cell] = 0; }
 
   /// Whether soil slid off a cell when it was last looked at: what slides onto it will slide on.
-  bool slides(std::size_t cell) const { return slides_[cell] != 0; }
-  void let_slide(std::size_t cell, bool slides) { slides_[cell] = slides ? 1 : 0; }
+  bool slides(std::size_t cell) const { return layers_.slides[cell] != 0; }
+  void let_slide(std::size_t cell, bool slides) { layers_.slides[cell] = slides ? 1 : 0; }
   SlumpState& slumping() { return slumping_; }
 
   /// Dry mass of the known cells above a level, now and before [kg].
@@ -118,10 +122,10 @@ class GroundWindow {
 
  private:
   void changed(std::size_t i) {
-    height_[i] = bank_[i] + loose_[i];
+    layers_.height[i] = layers_.bank[i] + layers_.loose[i];
     const auto column = static_cast<std::size_t>(stride_);
-    awake_[i] = awake_[i - 1] = awake_[i + 1] = 1;
-    awake_[i - column] = awake_[i + column] = 1;
+    layers_.awake[i] = layers_.awake[i - 1] = layers_.awake[i + 1] = 1;
+    layers_.awake[i - column] = layers_.awake[i + column] = 1;
   }
   void mix(std::size_t cell, double thickness);
   void check(const CellBlock& cells) const;
@@ -136,14 +140,9 @@ class GroundWindow {
   GroundSoil soil_;
   CellBlock cells_;
   Eigen::Index stride_ = 0;
-  // The layers have a frame of one cell of unknown ground around them. Flags are not bytes, which
-  // may alias all members: the compiler would read these again after each write.
-  std::vector<double> bank_;
-  std::vector<double> loose_;
-  std::vector<double> height_;
-  std::vector<double> void_ratio_;  ///< of the loose layer; empty if that of dug soil
-  std::vector<std::uint16_t> awake_;
-  std::vector<std::uint16_t> slides_;
+  void lay_out(const CellBlock& cells);
+  void copy_in(const GroundLayers& from, const CellBlock& held);
+  GroundLayers layers_;
   SlumpState slumping_;
 };
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "simulation/ground_window.hpp"
+#include "earth/ground_window.hpp"
 
 namespace excavplan {
 

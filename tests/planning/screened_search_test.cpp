@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/planning/screened_search.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+namespace excavplan {
+namespace {
+
+DigSearchOptions small_search(unsigned threads) {
+  DigSearchOptions options = budget_search();
+  options.threads = threads;
+  options.stop.evaluations = 150;
+  return options;
+}
+
+class ScreenedSearch : public testing::Test {
+ protected:
+  Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  SoilKind soil_ = load_soil(find_data_file("soils/loam.json"));
+  HeightMapSimulator simulator_{machine_, soil_, 40.0};
+};
+
+TEST_F(ScreenedSearch, FindsADigOfTheGroundItself) {
+  const Terrain ground = sloped_planning_ground(machine_, 0.1, 0.05);
+  const auto screened = search_screened(machine_, simulator_, ground, small_search(1));
+  ASSERT_TRUE(screened);
+  const auto usual = search_dig(machine_, simulator_, ground, small_search(1));
+  ASSERT_TRUE(usual);
+  EXPECT_GT(screened->worth, 0.97 * usual->worth);
+  const auto again =
+      evaluate_dig(machine_, simulator_, ground, screened->dig.parameters, screened->dig.start_x);
+  ASSERT_TRUE(std::holds_alternative<PlannedDig>(again));
+  EXPECT_EQ(std::get<PlannedDig>(again).payload_mass, screened->dig.payload_mass);
+  EXPECT_LE(screened->evaluations, 150 + Screening().confirmed);
+}
+
+TEST_F(ScreenedSearch, IsTheSameForAnyNumberOfThreads) {
+  const Terrain ground = level_planning_ground(machine_);
+  const auto one = search_screened(machine_, simulator_, ground, small_search(1));
+  const auto three = search_screened(machine_, simulator_, ground, small_search(3));
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(one->worth, three->worth);
+  EXPECT_EQ(one->dig.start_x, three->dig.start_x);
+}
+
+TEST(CoarserGround, HoldsAsMuchSoil) {
+  Terrain ground = undisturbed(flat_ground({0.0, 0.0, 0.4, 0.6}, 0.1));
+  ground.bank.z(0, 0) = 0.4;
+  ground.loose(1, 1) = 0.8;
+  ground.bank.z(5, 3) = std::numeric_limits<double>::quiet_NaN();
+  ground.loose_void_ratio.setConstant(6, 4, 1.0);
+  ground.loose_void_ratio(1, 1) = 0.8;
+  const Terrain coarse = coarser(ground, 2);
+  EXPECT_EQ(coarse.bank.z.rows(), 3);
+  EXPECT_EQ(coarse.bank.z.cols(), 2);
+  EXPECT_DOUBLE_EQ(coarse.bank.cell_size, 0.2);
+  EXPECT_DOUBLE_EQ(coarse.bank.z(0, 0), 0.1);
+  EXPECT_DOUBLE_EQ(coarse.loose(0, 0), 0.2);
+  EXPECT_NEAR(coarse.loose_void_ratio(0, 0), 0.8, 1e-6);
+  EXPECT_DOUBLE_EQ(coarse.bank.z(2, 1), 0.0);
+  EXPECT_THROW(coarser(ground, 0), Error);
+}
+
+}  // namespace
+}  // namespace excavplan
