@@ -19,5 +19,7 @@ void bind_library(pybind11::module_& module);
 /// Of the room plan, which takes what planning and library give.
 void bind_plan_dig(pybind11::module_& module);
 void bind_survey(pybind11::module_& module);
+/// What takes surveys and plans.
+void bind_site(pybind11::module_& module);
 
 }  // namespace excavplan::python
