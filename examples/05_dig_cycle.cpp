@@ -2,35 +2,55 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// A controller without knowledge of its soil: it plans a dig, digs, scans, estimates the density
-/// and plans the next dig on the ground as it is left. The simulator and its camera replace
-/// the machine here: substitute your own in their two lines.
+/// A controller without knowledge of its soil: it scans, plans, digs and scans again, while a site
+/// remembers ground and density. The simulator and its camera replace the machine here: substitute
+/// your own in scan() and dig().
+///
+///   05_dig_cycle [FOLDER]    of the site, which must be new; without one it is not kept
 
+#include <stdlib.h>  // mkdtemp
+
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
-#include <vector>
+#include <string>
 
 #include <excavplan/base/data_files.hpp>
-#include <excavplan/density/density_estimate.hpp>
-#include <excavplan/planning/plan_dig.hpp>
-#include <excavplan/scans/scan_terrain.hpp>
-#include <excavplan/sensing/scene.hpp>
+#include <excavplan/sensing/sensor_setup.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/site/plan_on_site.hpp>
 
 using namespace excavplan;
 
 namespace {
 
-constexpr double true_density = 60.0;  ///< known to the simulator only [%]
+constexpr double true_density = 40.0;  ///< known to the simulator only [%]
 constexpr int digs = 3;
+const Eigen::Vector2d dump_at(3.5, 3.5);  ///< in sight of the camera [m]
 
-Scan scan_of(std::vector<Eigen::Vector3d> points) {
-  Cloud cloud;
-  cloud.width = points.size();
-  cloud.points = std::move(points);
-  Scan scan;
-  scan.clouds = {std::make_shared<const Cloud>(std::move(cloud))};
-  return scan;
+/// What is told after a scan; the frame of the site is that of the machine where it stands.
+SiteEvent scan(const Terrain& ground, int number) {
+  auto cloud = std::make_shared<Cloud>();
+  const double dump = std::atan2(dump_at.y(), dump_at.x());
+  cloud->points = scan_surface(ground.surface(), sensor_setup_of_word("boom-camera"),
+                               {0.0, dump - 0.25, dump + 0.25}, static_cast<std::uint64_t>(number));
+  cloud->width = cloud->points.size();
+  SiteEvent event;
+  event.scan.clouds = {cloud};
+  event.scan.z_is_up = true;
+  event.time = 60.0 * number;  // [s]; of the clock on site
+  event.dug = false;
+  return event;
+}
+
+/// The machine follows plan.trajectory; the simulator does so and leaves scene.after.
+DigScene dig(const SiteSettings& site, const Terrain& ground, const PlannedDig& planned) {
+  SceneOptions driven;
+  driven.path = planned.parameters;
+  driven.start_x = planned.start_x;
+  driven.dump_at = dump_at;
+  return run_scene(site.machine, site.soil, true_density, ground, driven);
 }
 
 void print(const char* about, const std::vector<Warning>& warnings) {
@@ -39,46 +59,56 @@ void print(const char* about, const std::vector<Warning>& warnings) {
   }
 }
 
-}  // namespace
+int run(const std::string& folder) {
+  const SiteSettings settings = {load_soil(find_data_file("soils/loam.json")),
+                                 load_machine(find_data_file("machines/zx120.json")),
+                                 load_density_law(find_data_file("laws/zx120-loam.json")),
+                                 {},
+                                 {}};
+  Terrain ground = undisturbed(flat_ground({-2.0, -4.0, 12.0, 9.0}, 0.05));
+  Site site(folder, settings, SiteAccess::write);
+  site.update(scan(ground, 0));
 
-int main() {
-  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
-  const DensityLaw law = load_density_law(find_data_file("laws/zx120-loam.json"));
-  const Rectangle scene_area = scene_extent(machine, default_dump_point());
-
-  Terrain ground = undisturbed(flat_ground(scene_area, 0.05));  // as it is
-  Terrain seen = level_planning_ground(machine);                // as the last scan shows it
-  GroundDensity density(50.0, 25.0);
-  PlanOptions options;
-  options.method = PlanMethod::search;
-  for (int dig = 1; dig <= digs; ++dig) {
-    const DigPlan plan = plan_dig(machine, loam, density, seen, options);
-    if (!plan.dig) {
-      std::printf("%s\n", plan.reason.c_str());
+  SitePlanOptions options;
+  options.plan.method = PlanMethod::search;
+  options.density = GroundDensity(50.0, 25.0);  // until a dig told one
+  for (int number = 1; number <= digs; ++number) {
+    const SitePlan next = plan_on_site(site, options);
+    if (!next.plan.dig) {
+      std::printf("%s\n", next.plan.reason.c_str());
       return 1;
     }
     // A machine on site should stop here; the simulator cannot come to harm.
-    if (!plan.trustworthy) print("doubt about the plan", plan.warnings);
-
-    SceneOptions driven;  // the machine follows plan.trajectory
-    driven.path = plan.dig->parameters;
-    driven.start_x = plan.dig->start_x;
-    const DigScene scene = run_scene(machine, loam, true_density, ground, driven);
-    SceneScans scans = scan_scene(scene, DepthCamera(), static_cast<std::uint64_t>(dig));
-
-    const DigScans pair = {scan_of(std::move(scans.before)), scan_of(std::move(scans.after)), {}};
-    const DensityEstimate estimate = estimate_density(pair, law);
-    std::printf("dig %d: planned for %.1f +- %.1f %%, lifted %.0f kg for %.1f kJ\n", dig,
-                density.percent, density.sd_percent, scene.dig.payload_mass,
-                scene.dig.energy.total / 1000.0);
-    if (estimate.trustworthy) {
-      density = *estimate.ground_density();
-    } else {
-      print("density not used", estimate.warnings);
-    }
-    seen = terrain_from_scan(pair.after, planning_extent(machine), 0.05).terrain;
+    if (!next.plan.trustworthy) print("doubt about the plan", next.plan.warnings);
+    const PlannedDig& planned = *next.plan.dig;
+    const DigScene scene = dig(settings, ground, planned);
     ground = scene.after;
+    std::printf("dig %d: planned for %.1f +- %.1f %%, lifted %.0f kg for %.1f kJ\n", number,
+                next.density.percent, next.density.sd_percent, scene.dig.payload_mass,
+                scene.dig.energy.total / 1000.0);
+
+    SiteEvent event = scan(ground, number);
+    event.dug = true;
+    event.options.dug_path = {settings.machine, planned.parameters, planned.start_x};
+    event.foretold = ForetoldDig{next.density.percent, planned.energy};
+    event.stalled = scene.dig.stall.has_value();
+    const SiteUpdate update = site.update(event);
+    if (!update.trustworthy) print("survey not used", update.warnings);
+    if (update.density) {
+      std::printf("  density %.1f +- %.1f %%\n", update.density->percent,
+                  update.density->sd_percent);
+    }
   }
-  std::printf("density %.1f +- %.1f %%\n", density.percent, density.sd_percent);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 1) return run(argv[1]);
+  std::string folder = (std::filesystem::temp_directory_path() / "excavplan-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) return 1;
+  const int ended = run(folder);
+  std::filesystem::remove_all(folder);
+  return ended;
 }

@@ -30,7 +30,7 @@ set(efficiency_may_use ground change clouds scans logs)
 set(images_may_use clouds scans)
 set(recording_may_use clouds scans images)
 set(density_may_use ground change soil machine simulation calibration scans logs)
-set(site_may_use ground change soil belief machine simulation scans density)
+set(site_may_use ground change soil belief machine simulation planning scans density)
 set(paper_may_use change clouds scans density)
 set(experiments_may_use
   ground change soil machine simulation sensing calibration planning scans density)

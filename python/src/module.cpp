@@ -45,6 +45,7 @@ PYBIND11_MODULE(_core, module) {
   bind_plan_dig(module);
   bind_survey(module);
   bind_design(module);
+  bind_site(module);
   module.attr("__name__") = own_name;
   forbid_empty_objects(module);
 

@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "plans.hpp"
 #include "rooms.hpp"
 #include "simulators.hpp"
 #include "texts.hpp"
@@ -53,12 +54,6 @@ StartRule start_rule_of(const Start& start, const StartRule& usual) {
   throw Error(ErrorKind::bad_input, "the start rule: '" + word + "' is none of" + known.substr(1) +
                                         " and no x in metres");
 }
-
-/// With the callback, which only the thread of Python may touch.
-struct SearchOptionsInPython {
-  DigSearchOptions options = budget_search();
-  py::object progress = py::none();
-};
 
 SearchOptionsInPython made_options(const std::optional<DigObjective>& objective, int evaluations,
                                    double seconds, std::uint64_t seed, unsigned threads,
@@ -304,13 +299,7 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
                 double speed_fraction, std::optional<double> cell_size,
                 const Eigen::Vector2d& attitude, const std::optional<HeightMap>& standing_on) {
   const auto own = std::make_shared<Call>();
-  PlanOptions options;
-  options.method = of_word<PlanMethod>(
-      "the method", method, {{"library", PlanMethod::library}, {"search", PlanMethod::search}});
-  if (library) options.library = std::make_shared<PathLibrary>(*library);
-  options.search = options_in(own, search, simulator);
-  options.simulator = simulator_kind(simulator, own);
-  options.trajectory.speed_fraction = speed_fraction;
+  PlanOptions options = plan_options(own, {method, library, search, simulator, speed_fraction});
   options.cell_size = cell_size;
   options.attitude = {attitude.x(), attitude.y()};
   options.standing_on = standing_on;
@@ -369,6 +358,18 @@ void bind_motion(py::module_& module) {
 }
 
 }  // namespace
+
+PlanOptions plan_options(const std::shared_ptr<Call>& call, const PlanArguments& given) {
+  PlanOptions options;
+  options.method =
+      of_word<PlanMethod>("the method", given.method,
+                          {{"library", PlanMethod::library}, {"search", PlanMethod::search}});
+  if (given.library) options.library = std::make_shared<PathLibrary>(*given.library);
+  options.search = options_in(call, given.search, given.simulator);
+  options.simulator = simulator_kind(given.simulator, call);
+  options.trajectory.speed_fraction = given.speed_fraction;
+  return options;
+}
 
 void bind_planning(py::module_& module) {
   bind_digs(module);

@@ -20,5 +20,7 @@ void bind_library(pybind11::module_& module);
 void bind_plan_dig(pybind11::module_& module);
 void bind_survey(pybind11::module_& module);
 void bind_design(pybind11::module_& module);
+/// What takes surveys and plans.
+void bind_site(pybind11::module_& module);
 
 }  // namespace excavplan::python

@@ -13,6 +13,7 @@
 #include "calls.hpp"
 #include "paths.hpp"
 #include "rooms.hpp"
+#include "scans.hpp"
 #include "texts.hpp"
 #include "words.hpp"
 
@@ -70,12 +71,15 @@ Scan made_scan(const py::object& source, const std::optional<ArrayLike>& site_fr
   return scan;
 }
 
-/// What an argument means: a Scan, or what one is made from.
+}  // namespace
+
 Scan scan_of(const py::object& source, const char* name) {
   if (py::isinstance<Scan>(source)) return source.cast<Scan>();
   const bool named = is_file(source);
   return made_scan(source, std::nullopt, std::nullopt, 1.0, std::nullopt, false, named ? "" : name);
 }
+
+namespace {
 
 void bind_clouds(py::module_& module) {
   py::class_<Cloud>(module, "Cloud", "Points of a scan [m].")

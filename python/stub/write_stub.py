@@ -136,7 +136,8 @@ def class_lines(name, kind):
             lines += property_lines(member_name, member)
         elif inspect.isroutine(member) and member.__doc__ and (
                 not member_name.startswith("_") or member_name in ("__init__", "__len__",
-                                                                   "__bool__")):
+                                                                   "__bool__", "__enter__",
+                                                                   "__exit__")):
             if signatures(member):
                 lines += lines_of(member_name, member, "    ")
     return lines if lines[-1].startswith(" ") else [*lines, "    ..."]

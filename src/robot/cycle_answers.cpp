@@ -9,6 +9,23 @@
 #include "results/warning_results.hpp"
 
 namespace excavplan {
+namespace {
+
+Json site_json(const SiteUpdate& update) {
+  Json json = {{"digs", update.digs},
+               {"density_percent", nullptr},
+               {"density_sd_percent", nullptr},
+               {"density_interval_percent", nullptr}};
+  if (update.density) {
+    json["density_percent"] = update.density->percent;
+    json["density_sd_percent"] = update.density->sd_percent;
+    json["density_interval_percent"] = update.density->interval_percent;
+  }
+  json["taken"] = update.taken;
+  return json;
+}
+
+}  // namespace
 
 std::string to_json(const CycleEstimate& answer) {
   const DensityEstimate& estimate = answer.estimate;
@@ -30,6 +47,7 @@ std::string to_json(const CycleEstimate& answer) {
                {"messages_after", answer.after},
                {"machine_points", estimate.machine_points},
                {"warnings", warnings_json(answer.warnings)}});
+  if (answer.site) json["site"] = site_json(*answer.site);
   return json_text(json);
 }
 

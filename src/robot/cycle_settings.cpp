@@ -14,6 +14,7 @@
 #include "base/check.hpp"
 #include "base/files.hpp"
 #include "machine/corner_rules.hpp"
+#include "robot/cycle_site.hpp"
 
 namespace excavplan {
 namespace {
@@ -67,11 +68,19 @@ std::shared_ptr<const PathLibrary> library_of(const CycleSources& sources, const
   return std::make_shared<PathLibrary>(shipped_library(machine, soil, objective));
 }
 
+void check_site(const DigCycleSettings& settings) {
+  base_on_site(settings);
+  require(settings.estimate.method == VolumeMethod::surface,
+          "site: the ground is known by its surface, not by the paper's method");
+  require(!settings.estimate.prior, "site: knows the digs before, there is no other prior");
+}
+
 }  // namespace
 
 void check(const DigCycleSettings& settings) {
   require_in("scans", static_cast<double>(settings.scans), 1.0, DigCycleSession::most_scans);
   require(settings.site_from_scan.allFinite(), "site_from_scan: a number is not finite");
+  if (!settings.site.empty()) check_site(settings);
   require(settings.oldest_joints > 0.0, "oldest_joints [s]", settings.oldest_joints, "above 0");
   require(settings.oldest_scan > 0.0, "oldest_scan [s]", settings.oldest_scan, "above 0");
   require(settings.search_seconds > 0.0, "search_seconds", settings.search_seconds, "above 0");

@@ -16,6 +16,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "recording/times.hpp"
+#include "robot/cycle_site.hpp"
 #include "robot/live_scan.hpp"
 #include "robot/message_clock.hpp"
 #include "robot/recent_joints.hpp"
@@ -35,6 +36,19 @@ double seconds(std::int64_t from, std::int64_t to) {
   return 1e-9 * (static_cast<double>(to) - static_cast<double>(from));
 }
 
+std::vector<Warning> ending_trust(const std::vector<Warning>& all) {
+  std::vector<Warning> some;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+               [](const Warning& warning) { return warning.ends_trust; });
+  return some;
+}
+
+/// A dig that was planned, and for which density.
+struct DigForetold {
+  PlannedDig dig;
+  double density_percent;
+};
+
 std::string count_text(std::size_t found, std::size_t wanted) {
   return std::to_string(found) + " of " + std::to_string(wanted);
 }
@@ -47,7 +61,9 @@ const char* name(CycleStage stage) {
 }
 
 struct DigCycleSession::State {
-  explicit State(DigCycleSettings given) : settings(std::move(given)), density(settings.density) {}
+  explicit State(DigCycleSettings given) : settings(std::move(given)), density(settings.density) {
+    if (!settings.site.empty()) site.emplace(settings);
+  }
 
   Time time_of(const RobotMessage& message, std::int64_t stamp);
   void come(const RobotMessage& message, Time time);
@@ -62,15 +78,22 @@ struct DigCycleSession::State {
   void settle(Frames& frames, bool all);
   void settle_postures(Frames& frames, bool all) const;
   std::string early_text() const;
-  std::vector<Warning> scan_warnings(bool averaged) const;
+  std::vector<Warning> scan_warnings(const CycleEstimate& answer, bool averaged) const;
   Scan scan_of(Frames& frames, const char* which, bool& averaged);
+  GroundScan ground_scan(Frames& frames, const char* which, bool& averaged);
+  double seconds_of(const Frames& frames) const;
   DensityOptions estimate_options() const;
+  CycleEstimate estimate_of_scans(bool& averaged);
+  CycleEstimate estimate_on_site(bool& averaged);
   bool is_outdated() const;
   std::optional<Scan> last_scan();
   ScannedTerrain terrain(const std::optional<Scan>& scan) const;
   ScannedTerrain ground_around(const std::optional<Scan>& scan) const;
   HeightMap ground_at_tracks(const Scan& scan) const;
-  PlanOptions plan_options() const;
+  PlanOptions plan_options(const std::optional<Scan>& scan) const;
+  std::vector<Warning> plan_on_scan(const std::optional<Scan>& scan, CyclePlan& answer) const;
+  std::vector<Warning> plan_with_site(const std::optional<Scan>& scan, CyclePlan& answer);
+  std::vector<Warning> look_around(const std::optional<Scan>& scan);
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
   Time scan_time() const;
@@ -87,10 +110,12 @@ struct DigCycleSession::State {
   std::size_t early = 0;                       ///< messages of points from before that
   GroundDensity density;
   bool density_is_stated = true;
-  bool last_refused = false;          ///< the last estimate was not to be trusted
-  std::optional<PlannedDig> planned;  ///< the last plan
-  std::string plan_id;                ///< of its motion; empty: none, or it has begun
-  std::optional<PlannedDig> driven;   ///< what was planned when the last dig began
+  bool last_refused = false;              ///< the last estimate was not to be trusted
+  std::optional<DigForetold> planned;     ///< the last plan
+  std::string plan_id;                    ///< of its motion; empty: none, or it has begun
+  std::optional<DigForetold> driven;      ///< what was planned when the last dig began
+  std::optional<CycleSite> site;          ///< of the settings
+  std::optional<CycleEstimate> surveyed;  ///< what the site answered to the last dig
 };
 
 /// When a message with this stamp was measured.
@@ -274,11 +299,24 @@ Scan DigCycleSession::State::scan_of(Frames& frames, const char* which, bool& av
   return scan;
 }
 
+/// When they were measured, since 1970; else by the clock of the computer [s].
+double DigCycleSession::State::seconds_of(const Frames& frames) const {
+  std::int64_t newest = 0;
+  for (const LiveFrame& frame : frames) newest = std::max(newest, frame.time);
+  if (newest > 0) return 1e-9 * static_cast<double>(newest);
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(since_1970).count();
+}
+
+GroundScan DigCycleSession::State::ground_scan(Frames& frames, const char* which, bool& averaged) {
+  return {scan_of(frames, which, averaged), seconds_of(frames)};
+}
+
 DensityOptions DigCycleSession::State::estimate_options() const {
   DensityOptions options = settings.estimate;
   if (!options.soil.kind) options.soil.kind = settings.soil;
   if (settings.digs_as_planned && driven) {
-    options.dug_path = DugPath{settings.machine, driven->parameters, driven->start_x};
+    options.dug_path = DugPath{settings.machine, driven->dig.parameters, driven->dig.start_x};
   }
   return options;
 }
@@ -316,17 +354,20 @@ ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) 
 /// The same as far as the machine reaches, of which terrain() is a strip; warnings of its own
 /// alone.
 ScannedTerrain DigCycleSession::State::ground_around(const std::optional<Scan>& scan) const {
-  if (!scan) return {level_swing_ground(settings.machine), {}};
+  const bool remembers = site && site->knows_ground();
+  if (!scan) return {remembers ? site->around() : level_swing_ground(settings.machine), {}};
   Terrain present = swing_terrain_from_scan(*scan, settings.machine).terrain;
-  if (!settings.surroundings) return {std::move(present), {}};
-  return with_surroundings(present, *settings.surroundings);
+  if (settings.surroundings) return with_surroundings(present, *settings.surroundings);
+  if (remembers) return with_surroundings(present, site->around());
+  return {std::move(present), {}};
 }
 
 /// What the machine stands on, as scan and surroundings show it.
 HeightMap DigCycleSession::State::ground_at_tracks(const Scan& scan) const {
   HeightMap present = standing_ground_from_scan(scan, settings.machine);
-  if (!settings.surroundings) return present;
-  return known_from_both(present, settings.surroundings->surface());
+  if (settings.surroundings) return known_from_both(present, settings.surroundings->surface());
+  if (site && site->knows_ground()) return known_from_both(present, site->at_tracks());
+  return present;
 }
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
@@ -392,11 +433,13 @@ std::string DigCycleSession::State::early_text() const {
 }
 
 /// Of the scans before and after the dig.
-std::vector<Warning> DigCycleSession::State::scan_warnings(bool averaged) const {
+std::vector<Warning> DigCycleSession::State::scan_warnings(const CycleEstimate& answer,
+                                                           bool averaged) const {
   std::vector<Warning> warnings;
-  if (before.size() < after.size()) {
+  const bool is_known = site && answer.before == 0;
+  if (answer.before < answer.after && !is_known) {
     warnings.emplace_back(WarningCode::fewer_scans,
-                          "the scan before the dig has " + count_text(before.size(), after.size()) +
+                          "the scan before the dig has " + count_text(answer.before, answer.after) +
                               " messages: the dig began before more came");
   }
   if (!averaged) {
@@ -460,7 +503,8 @@ void DigCycleSession::take(const RobotMessage& message) {
 
 void DigCycleSession::start_dig(Time time) {
   State& state = *state_;
-  require(state.stage == CycleStage::digging || !state.recent.empty(),
+  const bool is_known = state.site && state.site->knows_ground();
+  require(state.stage == CycleStage::digging || !state.recent.empty() || is_known,
           "the dig begins, but no scan came before it");
   if (state.stage == CycleStage::digging) return;  // told twice
   state.settle(state.recent, true);
@@ -469,6 +513,8 @@ void DigCycleSession::start_dig(Time time) {
   state.after.clear();
   state.driven = std::exchange(state.planned, std::nullopt);
   state.plan_id.clear();
+  state.surveyed.reset();
+  if (state.site) state.site->begin_dig();
   state.stage = CycleStage::digging;
   state.early = 0;
   state.marked.reset();
@@ -494,6 +540,48 @@ std::string describe(const DigCycleSession& session) {
          (early == 0 ? "" : ", " + std::to_string(early) + " too early");
 }
 
+CycleEstimate DigCycleSession::State::estimate_of_scans(bool& averaged) {
+  DigScans scans;
+  scans.before = scan_of(before, "before", averaged);
+  scans.after = scan_of(after, "after", averaged);
+  CycleEstimate answer;
+  answer.estimate = estimate_density(scans, settings.law, estimate_options());
+  answer.before = before.size();
+  answer.warnings = answer.estimate.warnings;
+  const std::optional<GroundDensity> found = answer.estimate.ground_density();
+  answer.adopted = answer.estimate.trustworthy && found;
+  if (answer.adopted) density = *found;
+  return answer;
+}
+
+CycleEstimate DigCycleSession::State::estimate_on_site(bool& averaged) {
+  CycleEstimate answer;
+  std::optional<GroundScan> first;
+  if (site->needs_before() && !before.empty()) {
+    first = ground_scan(before, "before", averaged);
+    answer.before = before.size();
+  }
+  const GroundScan last = ground_scan(after, "after", averaged);
+  SiteEvent event;
+  event.scan = last.scan;
+  event.time = last.time;
+  event.options = estimate_options();
+  if (event.options.dug_path)
+    event.foretold = ForetoldDig{driven->density_percent, driven->dig.energy};
+  SiteUpdate update = site->survey(std::move(event), first);
+  answer.warnings = update.warnings;
+  answer.estimate = std::move(*update.estimate);
+  answer.estimate.trustworthy = update.trustworthy;
+  update.estimate.reset();
+  answer.adopted = update.trustworthy && update.density.has_value();
+  if (answer.adopted) {
+    density = GroundDensity(update.density->percent, update.density->sd_percent);
+    density.soil = settings.soil.name;
+  }
+  answer.site = std::move(update);
+  return answer;
+}
+
 CycleEstimate DigCycleSession::estimate() {
   State& state = *state_;
   state.last_refused = state.stage != CycleStage::before;
@@ -505,29 +593,25 @@ CycleEstimate DigCycleSession::estimate() {
               : std::string("no dig has been scanned: it is the time ") + name(state.stage) +
                     (state.stage == CycleStage::before ? " the first dig" : ""));
   bool averaged = true;
-  DigScans scans;
-  scans.before = state.scan_of(state.before, "before", averaged);
-  scans.after = state.scan_of(state.after, "after", averaged);
   CycleEstimate answer;
-  answer.estimate = estimate_density(scans, state.settings.law, state.estimate_options());
-  answer.before = state.before.size();
-  answer.after = state.after.size();
-  answer.warnings = answer.estimate.warnings;
-  const std::vector<Warning> more = state.scan_warnings(averaged);
-  answer.warnings.insert(answer.warnings.end(), more.begin(), more.end());
-  const std::optional<GroundDensity> found = answer.estimate.ground_density();
-  answer.adopted = answer.estimate.trustworthy && found;
-  state.last_refused = !answer.adopted;
-  if (answer.adopted) {
-    state.density = *found;
-    state.density_is_stated = false;
+  if (state.surveyed) {
+    answer = *state.surveyed;
+  } else {
+    answer = state.site ? state.estimate_on_site(averaged) : state.estimate_of_scans(averaged);
+    answer.after = state.after.size();
+    const std::vector<Warning> more = state.scan_warnings(answer, averaged);
+    answer.warnings.insert(answer.warnings.end(), more.begin(), more.end());
   }
+  if (state.site) state.surveyed = answer;
+  state.last_refused = !answer.adopted;
+  if (answer.adopted) state.density_is_stated = false;
   return answer;
 }
 
-PlanOptions DigCycleSession::State::plan_options() const {
+PlanOptions DigCycleSession::State::plan_options(const std::optional<Scan>& scan) const {
   using Clock = std::chrono::steady_clock;
   PlanOptions options = settings.plan;
+  if (scan) options.standing_on = ground_at_tracks(*scan);
   if (!std::isfinite(settings.search_seconds)) return options;
   const auto begin = Clock::now();
   options.search.progress = [=, own = options.search.progress,
@@ -538,21 +622,62 @@ PlanOptions DigCycleSession::State::plan_options() const {
   return options;
 }
 
+/// @return warnings of the ground
+std::vector<Warning> DigCycleSession::State::plan_on_scan(const std::optional<Scan>& scan,
+                                                          CyclePlan& answer) const {
+  const ScannedTerrain ground = terrain(scan);
+  answer.plan =
+      plan_dig(settings.machine, settings.soil, density, ground.terrain, plan_options(scan));
+  return ground.warnings;
+}
+
+/// The site takes in the first scan of the session. @return what is doubtful about its ground
+std::vector<Warning> DigCycleSession::State::look_around(const std::optional<Scan>& scan) {
+  if (site->is_current()) return {};
+  if (stage != CycleStage::before) {
+    return {{WarningCode::ground_before_dig,
+             "the site took no scan in since the last dig began: its ground is as before it"}};
+  }
+  if (scan) return site->look_around({*scan, seconds_of(recent)});
+  if (!site->knows_ground()) return {};
+  return {{WarningCode::scan_old,
+           "no scan came yet: the ground is as the site remembers it, and people and machines may "
+           "have moved since"}};
+}
+
+/// @return warnings of the ground
+std::vector<Warning> DigCycleSession::State::plan_with_site(const std::optional<Scan>& scan,
+                                                            CyclePlan& answer) {
+  std::vector<Warning> doubts = look_around(scan);
+  if (!site->knows_ground()) return plan_on_scan(scan, answer);
+  std::optional<Terrain> present;
+  if (scan) {
+    present = terrain(scan).terrain;
+    const std::vector<Warning> more = ending_trust(present->doubts);
+    doubts.insert(doubts.end(), more.begin(), more.end());
+  }
+  PlanOptions options = plan_options(scan);
+  if (!scan) options.standing_on = site->at_tracks();
+  SitePlan next = site->plan(options, settings.density, present);
+  answer.plan = std::move(next.plan);
+  density = next.density;
+  density_is_stated = !site->has_density();
+  return doubts;
+}
+
 CyclePlan DigCycleSession::plan(Time time) {
   State& state = *state_;
   if (time) state.now = time;
   const std::optional<Scan> scan = state.last_scan();
-  ScannedTerrain ground = state.terrain(scan);
   const DigCycleSettings& settings = state.settings;
   CyclePlan answer;
-  PlanOptions options = state.plan_options();
-  if (scan) options.standing_on = state.ground_at_tracks(*scan);
-  answer.plan = plan_dig(settings.machine, settings.soil, state.density, ground.terrain, options);
+  const std::vector<Warning> of_ground =
+      state.site ? state.plan_with_site(scan, answer) : state.plan_on_scan(scan, answer);
   answer.density = state.density;
   answer.density_is_stated = state.density_is_stated;
   answer.previous_density = state.last_refused;
   answer.warnings = settings.warnings;
-  answer.warnings.insert(answer.warnings.end(), ground.warnings.begin(), ground.warnings.end());
+  answer.warnings.insert(answer.warnings.end(), of_ground.begin(), of_ground.end());
   if (state.last_refused) {
     answer.warnings.emplace_back(WarningCode::previous_density,
                                  "the density by the last dig is not known or not to be trusted: "
@@ -577,7 +702,8 @@ CyclePlan DigCycleSession::plan(Time time) {
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });
-  state.planned = answer.plan.dig;
+  state.planned.reset();
+  if (answer.plan.dig) state.planned = DigForetold{*answer.plan.dig, answer.density.percent};
   state.plan_id = answer.stamp ? answer.stamp->id : "";
   return answer;
 }

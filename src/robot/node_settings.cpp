@@ -93,6 +93,7 @@ NodeSettings node_settings(const NodeParameters& given) {
   settings.scans = static_cast<std::size_t>(given.scans);
   settings.site_frame = given.site_frame;
   if (!given.frame_file.empty()) settings.site_from_scan = read_frame(given.frame_file);
+  settings.site = given.site;
   name_joints(given.joint_names, settings.machine.robot_joints);
   settings.machine_in_view = given.machine_in_view;
   settings.digs_as_planned = given.digs_as_planned;

@@ -194,6 +194,7 @@ bool Site::is_empty() const { return state_->is_empty(); }
 long long Site::updates() const { return state_->site.manifest.generation; }
 long long Site::digs() const { return state_->site.manifest.digs; }
 double Site::cell_size() const { return state_->site.manifest.cell_size; }
+const SiteSettings& Site::settings() const { return state_->settings; }
 
 const GroundState& Site::ground() const {
   require(!is_empty(), state_->store.path() + ": no scan was taken in");

@@ -384,6 +384,20 @@ class Master(unittest.TestCase):
             self.assertEqual("unseen_way: " in " ".join(answer.warnings), not surroundings)
             self.assertEqual(answer.trustworthy, bool(surroundings), answer.warnings)
 
+    def test_a_site_remembers_the_dig(self):
+        site = os.path.join(HOME.name, "pit")
+        with Node(scans=1, site=site) as node:
+            node.dig(cloud(points_of("before")), cloud(points_of("after")))
+            answer = node.call("dig_and_plan", DigAndPlan)
+            again = node.call("estimate", Estimate)
+        self.assertEqual(answer.estimate_message, "")
+        found = json.loads(answer.estimate_json)
+        self.assertEqual((found["site"]["digs"], found["site"]["taken"]), (1, True))
+        self.assertEqual(again.json, answer.estimate_json)
+        self.assertEqual(answer.density_percent, json.loads(answer.json)["density_percent"])
+        told = tool("estimate-density", "--site", site)
+        self.assertEqual((told["site"]["updates"], told["site"]["digs"]), (1, 1))
+
     def test_a_machine_with_a_kit(self):
         kit = os.path.join(HOME.name, "zx200-kit")
         tool("machine-kit", "zx200", "--output", kit, "--soil", "loam", "--densities", "0,50,100",

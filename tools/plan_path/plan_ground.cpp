@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan_path/plan_ground.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace excavplan::tools {
@@ -32,13 +31,9 @@ PlanGround ground_of_site(const PlanGroundInputs& inputs, const Machine& machine
   }
   PlanGround ground;
   ground.density_from = told;
-  ground.density = told.percent || told.file ? density_of(told) : site->density_in_reach();
+  if (told.percent || told.file) ground.stated = density_of(told);
   ground.is_known = true;
   ground.site = site;
-  GroundState known;
-  known.terrain =
-      site->ground(planning_extent(machine), inputs.cell_size.value_or(usual_cell(machine)));
-  ground.terrain = terrain_to_dig(known, soil, ground.density.percent);
   return ground;
 }
 
@@ -60,16 +55,6 @@ void check(const PlanGroundInputs& inputs) {
   DensityInput density = inputs.density;
   density.by_site = inputs.site.folder.has_value();
   check(density);
-}
-
-bool PlanGround::takes_density_under(const DigPlan& plan) {
-  constexpr double least_difference = 1.0;
-  if (!site || !site->has_density() || !plan.dig) return false;
-  const GroundDensity there = site->density_under(plan);
-  const bool differs = std::abs(there.percent - density.percent) > least_difference ||
-                       std::abs(there.sd_percent - density.sd_percent) > least_difference;
-  if (differs) density = there;
-  return differs;
 }
 
 PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& inputs,
@@ -94,13 +79,14 @@ PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& input
 
 DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,
                 const PlanOptions& options) {
-  const auto planned = [&] {
-    return ground.is_known ? plan_dig(machine, soil, ground.density, ground.terrain, options)
-                           : plan_dig(machine, soil, ground.density, options);
-  };
-  DigPlan plan = planned();
-  if (ground.takes_density_under(plan)) plan = planned();
-  return plan;
+  if (ground.site) {
+    SitePlan planned = ground.site->plan(options, ground.stated);
+    ground.density = planned.density;
+    ground.terrain = std::move(planned.ground);
+    return std::move(planned.plan);
+  }
+  return ground.is_known ? plan_dig(machine, soil, ground.density, ground.terrain, options)
+                         : plan_dig(machine, soil, ground.density, options);
 }
 
 MotionGround ground_to_move_on(const MotionInputs& motion, const PlanGroundInputs& inputs,

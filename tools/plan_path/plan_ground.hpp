@@ -32,20 +32,18 @@ struct PlanGroundInputs {
 void declare_plan_ground(Arguments& arguments, PlanGroundInputs& inputs);
 
 struct PlanGround {
-  Terrain terrain;                   ///< to dig on
-  GroundDensity density{0.0};        ///< of its bank; that of --ground where its file tells it
+  Terrain terrain;                   ///< to dig on; of --site by plan_on()
+  GroundDensity density{0.0};        ///< of its bank, likewise; of --ground where its file tells it
   DensityInput density_from;         ///< where that is from
   std::optional<GivenGround> given;  ///< by --ground
   std::shared_ptr<const SiteToPlanOn> site = {};  ///< by --site; else null
+  std::optional<GroundDensity> stated = {};       ///< by an option, for a site without digs
   std::vector<Warning> warnings;
 
   bool is_known = false;  ///< else it is taken to be level
 
   /// Null unless it is known.
   const Terrain* known() const { return is_known ? &terrain : nullptr; }
-  /// Takes the density that the site believes in where a plan digs, if it differs from the one that
-  /// was planned for by more than a point (ours). @return whether it does
-  bool takes_density_under(const DigPlan& plan);
 };
 
 /// Checks made before the work. @throws Error (bad_input)
@@ -54,7 +52,7 @@ void check(const PlanGroundInputs& inputs);
 PlanGround plan_ground(const MotionInputs& motion, const PlanGroundInputs& inputs,
                        const Machine& machine, const SoilKind& soil);
 
-/// On a site the plan is made again where the density there is another (takes_density_under()).
+/// As plan_on_site() on a site, of which ground and density are then known.
 DigPlan plan_on(PlanGround& ground, const Machine& machine, const SoilKind& soil,
                 const PlanOptions& options);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/site/plan_on_site.hpp>
 
 #include "inputs/site_folder.hpp"
 
@@ -20,15 +20,12 @@ class SiteToPlanOn {
   bool has_density() const { return site_.digs() > 0; }
   /// In the machine's frame.
   Terrain ground(const Rectangle& extent, double cell_size) const;
-  /// Of the strip that the bucket can reach.
-  GroundDensity density_in_reach() const;
-  /// Of the strip that a dig cuts; that in reach without a dig.
-  GroundDensity density_under(const DigPlan& plan) const;
+  /// @param density  that it is for as long as no dig of the site told one
+  SitePlan plan(const PlanOptions& options, const std::optional<GroundDensity>& density) const;
   /// Adds key `site`, with the density that the dig is planned for.
   void describe(const GroundDensity& density, Outcome& outcome) const;
 
  private:
-  const Machine& machine_;
   BasePose base_;
   excavplan::Site site_;
 };

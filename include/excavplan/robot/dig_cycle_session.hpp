@@ -11,6 +11,7 @@
 
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/robot/dig_cycle_settings.hpp>
+#include <excavplan/site/site_event.hpp>
 
 /// @file
 /// The dig cycle of a robot: its messages in, density and plan out. Knows the bytes of ROS 1 and
@@ -31,12 +32,13 @@ const char* name(CycleStage stage);
 /// The density by the last dig.
 struct CycleEstimate {
   DensityEstimate estimate;  ///< as estimate_density() gives it
-  std::size_t before = 0;    ///< messages in the scan before
+  std::size_t before = 0;    ///< messages in the scan before; 0: the site knows the ground
   std::size_t after = 0;     ///< and in that after
   bool adopted = false;      ///< the next plan is for this density
   /// Of the estimate, and fewer_scans, not_averaged, early_points (some were left out, measured
   /// before the dig was over), not_stamped (whether points were is not known).
   std::vector<Warning> warnings;
+  std::optional<SiteUpdate> site = {};  ///< with a site: its answer, but for the estimate
 };
 
 /// The next dig.
@@ -58,7 +60,8 @@ struct CyclePlan {
   /// above the dig), not_standing * (a joint turned within the last half second, or its states do
   /// not reach back so far), search_stopped (by its time), no_motion * (the ground is in the way,
   /// or a joint stands beyond its limits), scan_old * (DigCycleSettings::oldest_scan), and
-  /// start_left *, stale_plan * and foreign_plan * of confirm_start().
+  /// start_left *, stale_plan * and foreign_plan * of confirm_start(). On a site also those of the
+  /// first scan of this session (scan_not_taken *), and scan_old * without one.
   std::vector<Warning> warnings;
 };
 
@@ -67,7 +70,7 @@ class DigCycleSession {
  public:
   static constexpr std::size_t most_scans = 100;  ///< of DigCycleSettings::scans; ours
 
-  /// @throws Error (bad_input) as check(DigCycleSettings)
+  /// @throws Error (bad_input) as check(DigCycleSettings); as Site() for writing
   explicit DigCycleSession(DigCycleSettings settings);
   ~DigCycleSession();
   DigCycleSession(DigCycleSession&&) noexcept;             ///< the other may only be destroyed then
@@ -81,7 +84,8 @@ class DigCycleSession {
   /// The dig begins: the latest scans are those before it.
   /// @param time  when [ns]. Points that were measured before the last mark and come after it are
   /// left out; nothing: what comes counts
-  /// @throws Error (bad_input) if there is none; the session is then as before
+  /// @throws Error (bad_input) if there is none and no site knows the ground; the session is then
+  /// as before
   void start_dig(std::optional<std::int64_t> time = {});
   /// The dig is over: what is measured from now on shows the ground after it.
   /// @param time  the same; nothing: that of start_dig() holds
@@ -94,11 +98,13 @@ class DigCycleSession {
   std::size_t early_scans() const;       ///< messages left out since the last start_dig()
   const GroundDensity& density() const;  ///< that the next plan is for
 
-  /// The density by the scans before and after the last dig. One to trust is adopted.
+  /// The density by the scans before and after the last dig. One to trust is adopted. A site takes
+  /// the dig in, once, and needs no scan before if it took one since the dig before.
   /// @throws Error (bad_input) if scans are missing; (bad_file) as estimate_density(), and if no
   /// transform leads to a scan
   CycleEstimate estimate();
-  /// The next dig for density(), on the ground as last scanned.
+  /// The next dig for density(), on the ground as last scanned; as plan_on_site() on a site, which
+  /// takes in the first scan of the session before.
   /// @param time  now, by the clock of the marks [ns], for the age of joint states; nothing: that
   /// of the newest message
   /// @throws Error as plan_dig() and terrain_from_scan()

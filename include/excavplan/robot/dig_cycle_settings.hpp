@@ -41,6 +41,10 @@ struct DigCycleSettings {
   /// Puts the points, or the site frame of /tf, into that of the machine: origin on the swing axis
   /// at ground level, x forward, z up.
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
+  /// Folder of a Site that remembers ground and density, for this session alone while it lives;
+  /// empty: none. Its frame is `site_frame`, where the inverse of `site_from_scan` says how the
+  /// machine stands, which must be level; without a `site_frame` that of the machine.
+  std::string site = {};
   /// Points of boom, arm and bucket are left out, by the joint states; needs scans in the frame of
   /// the machine.
   bool machine_in_view = false;

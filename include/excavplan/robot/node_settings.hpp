@@ -37,6 +37,7 @@ struct NodeParameters {
   int scans = 5;                                 ///< as DigCycleSettings::scans
   std::string site_frame;                        ///< as DigCycleSettings::site_frame
   std::string frame_file;                        ///< of DigCycleSettings::site_from_scan
+  std::string site;                              ///< as DigCycleSettings::site
   std::vector<std::string> joint_names;          ///< four, or none: the machine's
   bool machine_in_view = false;                  ///< as DigCycleSettings::machine_in_view
   bool digs_as_planned = true;                   ///< as DigCycleSettings::digs_as_planned
@@ -64,6 +65,7 @@ void for_each_parameter(NodeParameters& all, const Use& use) {
   use("density_sd_percent", all.density_sd_percent);
   use("scans", all.scans);
   use("site_frame", all.site_frame), use("frame_file", all.frame_file);
+  use("site", all.site);
   use("joint_names", all.joint_names);
   use("joint_age_seconds", all.joint_age_seconds);
   use("scan_age_seconds", all.scan_age_seconds);

@@ -109,8 +109,7 @@ double survey_cell(const std::vector<ScanOutline>& outlines);
 /// below (0.1 mm)^2; NaN for a cell with one accepted point.
 ///
 /// The result does not depend on how a scan is parted into files.
-/// @throws Error (bad_file) as read_cloud(), or if a file changes while it is read; (bad_input) as
-/// rasterise()
+/// @throws Error as rasterise(); (bad_file) as read_cloud(), or if a file changes while it is read
 Surface survey_surface(const Scan& scan, const Rectangle& extent,
                        const RasterOptions& options = {});
 

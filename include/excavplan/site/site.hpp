@@ -49,10 +49,11 @@ class Site {
   /// updates the last is
   void undo();
 
-  bool is_empty() const;              ///< no scan was taken in
-  long long updates() const;          ///< scans taken in, less those undone
-  long long digs() const;             ///< those that gave a density
-  double cell_size() const;           ///< [m]
+  bool is_empty() const;                 ///< no scan was taken in
+  long long updates() const;             ///< scans taken in, less those undone
+  long long digs() const;                ///< those that gave a density
+  double cell_size() const;              ///< [m]
+  const SiteSettings& settings() const;  ///< with which it was opened
   const GroundState& ground() const;  ///< in the site's frame. @throws Error (bad_input) if empty
 
   const DensityBelief& belief() const;  ///< where in the site's frame which density is believed in

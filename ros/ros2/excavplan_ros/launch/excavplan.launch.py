@@ -13,10 +13,12 @@ def generate_launch_description():
         DeclareLaunchArgument("ns", default_value="zx120"),
         DeclareLaunchArgument("points", default_value="/points"),
         DeclareLaunchArgument("site_frame", default_value="base_link"),
+        DeclareLaunchArgument("site", default_value=""),  # folder that remembers the ground
         Node(package="excavplan_ros", executable="excavplan_node", name="excavplan",
              namespace=LaunchConfiguration("ns"), output="screen",
              remappings=[("points", LaunchConfiguration("points")),
                          ("start_dig", "/start_dig"), ("end_dig", "/end_dig")],
              parameters=[{"machine": "zx120", "soil": "loam",
-                          "site_frame": LaunchConfiguration("site_frame")}]),
+                          "site_frame": LaunchConfiguration("site_frame"),
+                          "site": LaunchConfiguration("site")}]),
     ])
