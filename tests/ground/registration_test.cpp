@@ -161,6 +161,43 @@ TEST(Align, SurvivesFortyPerCentOfChangedGround) {
   for (int i = 3; i < 6; ++i) EXPECT_NEAR(found.motion(i), undisturbed.motion(i), 0.001);
 }
 
+double heap(double x, double y, double height) {
+  return std::max(0.0, height - 0.7 * std::hypot(x, y));
+}
+
+/// Of ground that was known, away from where the machine worked.
+AlignmentOptions known_ground() {
+  AlignmentOptions options;
+  options.left_out = Rectangle{-3.0, -2.5, -2.0, -2.0};
+  return options;
+}
+
+TEST(Align, AHeapThatGrewEvenlyIsNoShiftOfKnownGround) {
+  const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto before = [](double x, double y) { return heap(x, y, 0.7); };
+    const auto after = [](double x, double y) { return heap(x, y, 0.79); };
+    const Alignment found = align(surface_of(before, still, 0.01, 2 * seed),
+                                  surface_of(after, still, 0.01, 2 * seed + 1), known_ground());
+    EXPECT_FALSE(found.lateral_is_significant) << found.found.transpose();
+    EXPECT_EQ(found.motion(0), 0.0);
+    EXPECT_EQ(found.motion(1), 0.0);
+  }
+}
+
+TEST(Align, HeapsOfKnownGroundThatNobodyTouchedShowAShift) {
+  const auto heaps = [](double x, double y) {
+    return heap(x - 1.5, y - 1.2, 0.7) + heap(x + 1.2, y - 0.8, 0.6);
+  };
+  const Eigen::Vector3d moved(0.05, -0.04, 0.0);
+  const Eigen::Isometry3d motion(Eigen::Translation3d{moved});
+  const Alignment found = align(surface_of(heaps, Eigen::Isometry3d::Identity(), 0.005, 1),
+                                surface_of(heaps, motion, 0.005, 2), known_ground());
+  EXPECT_TRUE(found.lateral_is_significant);
+  EXPECT_NEAR(found.motion(0), moved.x(), 0.01);
+  EXPECT_NEAR(found.motion(1), moved.y(), 0.01);
+}
+
 TEST(Align, RealignedMapsAgreeOnStableGround) {
   const Ground ground(rough_ground(), 7);
   const Surface before = surface_of(ground, Eigen::Isometry3d::Identity(), 0.0, 1);

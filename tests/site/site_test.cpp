@@ -100,6 +100,32 @@ TEST(Site, TheGroundOfAMachineThatTurnedIsTurned) {
       site.ground_for({500.0, 0.0, 0.0, 0.0}, {1.0, -1.0, 3.0, 1.0}, 0.05).terrain.bank.z(3, 3)));
 }
 
+TEST(Site, TakesInWhatALaterScanShowsBesideTheGround) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  SiteEvent narrow = digs.scan();
+  narrow.scan.area = Rectangle{2.0, -2.0, 9.0, 2.0};
+  site.update(narrow);
+  EXPECT_TRUE(std::isnan(height_at(site.ground().terrain.bank, 5.0, 3.5)));
+  ASSERT_TRUE(site.update(digs.scan()).taken);
+  EXPECT_NEAR(height_at(site.ground().terrain.bank, 5.0, 3.5),
+              height_at(digs.ground().bank, 5.0, 3.5), 0.02);
+}
+
+TEST(Site, ADigThatNoScanShowsGivesNoDensity) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  SiteEvent stalled = digs.scan();
+  stalled.dug = true;
+  stalled.options.dug_path = {digs.settings().machine, SceneOptions().path, 6.0};
+  const SiteUpdate update = site.update(stalled);
+  EXPECT_FALSE(update.estimate && update.estimate->trustworthy);
+  EXPECT_EQ(site.digs(), 0);
+}
+
 TEST(Site, AnUnmovedMachineSeesTheCellsAsTheyAre) {
   const TemporaryFolder folder;
   DigsInARow digs;
