@@ -8,10 +8,9 @@
 ///
 ///   05_dig_cycle [FOLDER]    of the site, which must be new; without one it is not kept
 
-#include <stdlib.h>  // mkdtemp
-
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
