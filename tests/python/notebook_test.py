@@ -30,7 +30,7 @@ class Notebook(unittest.TestCase):
             for cell in cells:
                 self.assertEqual(cell["outputs"], [])
                 exec("".join(cell["source"]), names)  # noqa: S102: our own
-        self.assertIn("density 41.5 +- 3.2 %", shown.getvalue())
+        self.assertIn("density 41.6 +- 3.2 %", shown.getvalue())
         self.assertGreater(names["plan"].dig.payload_mass, 400.0)
 
     def test_the_examples_of_the_guide_run(self):
