@@ -594,7 +594,7 @@ TEST_F(BadInput, IncompleteOptionsAreRefused) {
   const std::string tool = "estimate-density";
   refused(2, "AFTER is missing", tool, {scan});
   refused(2, "BEFORE is missing", tool, {});
-  refused(2, "--dug-path: drag, after 2.700 m: ", tool,
+  refused(2, "--dug-path: drag, after 2.725 m: ", tool,
           {scan, later_scan, "--dug-path", "45deg,0.35m,9m", "--dug-start", "6"});
   refused(3, "holds fewer than 100 finite points inside --area", tool,
           {scan, later_scan, "--area", "100,100,101,101"});
