@@ -25,8 +25,8 @@ SensorSetup boom_camera() {
   return {"boom-camera", with_errors_of(sensor_of_word("d435i"), camera)};
 }
 
-/// A scanning lidar on a mast above the cab, left of the boom: lower, heaps and pits hide a fifth of
-/// themselves. Place and window are ours.
+/// A scanning lidar on a mast above the cab, left of the boom: lower, heaps and pits hide a fifth
+/// of themselves. Place and window are ours.
 SensorSetup cab_lidar() {
   Lidar lidar;
   lidar.position = {0.6, 0.7, 4.2};

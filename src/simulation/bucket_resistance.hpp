@@ -11,8 +11,8 @@
 #include <excavplan/simulation/bucket_cavity.hpp>
 #include <excavplan/soil/soil.hpp>
 
-#include "simulation/bucket_cavity.hpp"
 #include "earth/ground_window.hpp"
+#include "simulation/bucket_cavity.hpp"
 #include "simulation/resistance.hpp"
 #include "simulation/soil_wedges.hpp"
 #include "simulation/swath.hpp"

@@ -9,10 +9,10 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "earth/slump.hpp"
 #include "ground/map_check.hpp"
 #include "ground/terrain.hpp"
 #include "machine/plane.hpp"
-#include "earth/slump.hpp"
 
 namespace excavplan {
 namespace {

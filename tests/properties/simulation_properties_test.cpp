@@ -9,8 +9,8 @@
 
 #include <Eigen/LU>
 
-#include "simulation/section_bucket.hpp"
 #include "earth/slump.hpp"
+#include "simulation/section_bucket.hpp"
 #include "simulation/swath.hpp"
 #include "soil/earthmoving.hpp"
 #include "support/cases.hpp"

@@ -34,7 +34,8 @@ const SensorSetup& sensor_setup_of_word(const std::string& word);
 std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const SensorSetup& setup,
                                           const std::vector<double>& swings, std::uint64_t seed);
 
-/// Scans of a dig and its heap by a set-up, swung to the dig (0) and to both sides of the dump point.
+/// Scans of a dig and its heap by a set-up, swung to the dig (0) and to both sides of the dump
+/// point.
 /// @throws Error (bad_input) as scan_surface(), or if it sees no ground
 SceneScans scan_scene(const DigScene& scene, const SensorSetup& setup, std::uint64_t seed);
 
