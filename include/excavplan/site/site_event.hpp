@@ -38,8 +38,8 @@ struct SiteEvent {
   bool dug = true;             ///< false: the scan tells the ground, and no density is sought
   double time = 0.0;           ///< when it was scanned, since 1970-01-01 UTC [s]
   BasePose base;               ///< of the machine during the dig
-  /// What is known of the dig, in the machine's frame: path, payload, work and more. Kind, law,
-  /// cell and prior are those of the site.
+  /// What is known of the dig: path (in the machine's frame), areas (in the site's), payload, work
+  /// and more. Kind, law, cell and prior are those of the site.
   DensityOptions options;
   std::optional<ForetoldDig> foretold;  ///< by its plan
   bool stalled = false;                 ///< the dig was given up, which its plan did not foretell
