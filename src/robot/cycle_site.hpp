@@ -29,7 +29,7 @@ class CycleSite {
   explicit CycleSite(const DigCycleSettings& settings);
 
   bool knows_ground() const { return !site_.is_empty(); }
-  bool has_density() const { return site_.digs() > 0; }
+  bool has_density() const { return !site_.belief().digs().empty(); }
   /// Whether it took a scan since the last dig of this session.
   bool is_current() const { return is_current_; }
   /// Whether the scan before the dig that began has news for it.

@@ -55,7 +55,8 @@ void put_obstacles(const Terrain& present, Terrain& ground) {
 SitePlan plan_on_site(const Site& site, const SitePlanOptions& options) {
   const SiteSettings& of = site.settings();
   SitePlan planned;
-  const bool is_stated = site.digs() == 0 && options.density;
+  const bool is_told = !site.belief().digs().empty();  // by a dig, if only that it stalled
+  const bool is_stated = !is_told && options.density;
   planned.density = is_stated ? *options.density : density_in_reach(site, options.base);
   const double cell = options.plan.cell_size.value_or(usual_cell(of.machine));
   GroundState known;
@@ -66,7 +67,7 @@ SitePlan plan_on_site(const Site& site, const SitePlanOptions& options) {
     planned.plan = plan_dig(of.machine, of.soil, planned.density, planned.ground, options.plan);
   };
   plan();
-  if (site.digs() == 0 || !planned.plan.dig) return planned;
+  if (!is_told || !planned.plan.dig) return planned;
   const GroundDensity there = density_under(site, options.base, planned.plan);
   if (!differ(there, planned.density)) return planned;
   planned.density = there;

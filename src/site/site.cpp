@@ -71,12 +71,29 @@ std::optional<RelativeDensity> believed(const DensityBelief& belief,
   return density;
 }
 
+/// The soil that a path was to cut in which a dig stalled: what held it is not seen.
+std::vector<BankPart> bank_that_held(const SiteEvent& event, const StoredSite& before) {
+  const auto& dug = event.options.dug_path;
+  if (!event.stalled || !dug || !dug->start_x) return {};
+  const DigParameters& path = dug->parameters;
+  const double length =
+      path.penetration_length * std::cos(path.penetration_angle) + path.drag_length;
+  const double half = 0.5 * dug->machine.bucket.width_outside;
+  const double cell = before.ground.terrain.bank.cell_size;
+  const double depth = std::max(cell, path.penetration_length * std::sin(path.penetration_angle));
+  const Rectangle strip = {*dug->start_x - std::max(length, cell), -half, *dug->start_x, half};
+  return bank_below(before.first, before.ground, event.base, strip, depth);
+}
+
 /// Learns from a dig, of which `next` has the ground already.
 void learn(const SiteEvent& event, const StoredSite& before, StoredSite& next, SiteUpdate& update) {
-  const std::vector<BankPart> bank = bank_cut({before.first, before.ground, next.ground});
+  std::vector<BankPart> bank = bank_cut({before.first, before.ground, next.ground});
+  const bool has_held = bank.empty();
+  if (has_held) bank = bank_that_held(event, before);
   const auto scan = static_cast<int>(before.manifest.generation);
   const ScanNumbers scans = {event.before ? -scan - 1 : scan, scan + 1};
-  const DigEvidence evidence = evidence_of(event, *update.estimate, bank, scans);
+  DigEvidence evidence = evidence_of(event, *update.estimate, bank, scans);
+  if (has_held) evidence.bank_share = 1.0;
   const bool has_density = evidence.survey || evidence.payload_percent;
   const bool has_news = has_density || !evidence.resistance.empty() || !evidence.limits.empty();
   if (has_news && !bank.empty()) next.belief.add(evidence);

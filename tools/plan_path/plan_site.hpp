@@ -17,7 +17,7 @@ class SiteToPlanOn {
   /// @throws Error as excavplan::Site() and base_of()
   SiteToPlanOn(const SiteFolderInputs& inputs, const Machine& machine, const SoilKind& soil);
 
-  bool has_density() const { return site_.digs() > 0; }
+  bool has_density() const { return !site_.belief().digs().empty(); }
   /// In the machine's frame.
   Terrain ground(const Rectangle& extent, double cell_size) const;
   /// @param density  that it is for as long as no dig of the site told one
