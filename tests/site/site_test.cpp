@@ -124,6 +124,23 @@ TEST(Site, ADigThatNoScanShowsGivesNoDensity) {
   const SiteUpdate update = site.update(stalled);
   EXPECT_FALSE(update.estimate && update.estimate->trustworthy);
   EXPECT_EQ(site.digs(), 0);
+  EXPECT_TRUE(site.belief().digs().empty());
+}
+
+TEST(Site, AStallTellsOfTheSoilThatHeld) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  const Rectangle strip = {5.5, -0.4, 6.0, 0.4};
+  const GroundDensity before = site.density_at({}, strip, 0.3);
+  SiteEvent stalled = digs.scan();
+  stalled.dug = stalled.stalled = true;
+  stalled.options.dug_path = {digs.settings().machine, SceneOptions().path, 6.0};
+  site.update(stalled);
+  EXPECT_EQ(site.digs(), 0) << "no survey told a density";
+  EXPECT_EQ(site.belief().digs().size(), 1U);
+  EXPECT_GT(site.density_at({}, strip, 0.3).percent, before.percent + 5.0);
 }
 
 TEST(Site, AnUnmovedMachineSeesTheCellsAsTheyAre) {
