@@ -19,8 +19,7 @@
 namespace excavplan {
 namespace {
 
-constexpr double least_warned_share =
-    0.01;  // of the volume dug or laid down; smaller ones are ignored
+constexpr double least_warned_share = 0.01;  // of what was dug or laid down; less is ignored
 constexpr double least_refused_share = 0.1;  // likewise
 constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
 constexpr double least_stable_share = 0.4;   // ours

@@ -62,12 +62,6 @@ std::vector<Surface> filled_surfaces(const std::vector<Scan>& scans, const Recta
   return surfaces;
 }
 
-Scan corrected(const Scan& scan, const Eigen::Matrix4d& correction) {
-  Scan result = scan;
-  result.site_from_scan = correction * scan.site_from_scan;
-  return result;
-}
-
 /// Surveys one pair again and again as its scan after is brought back.
 struct Registering {
   const Scan& after;
@@ -128,6 +122,12 @@ bool could_be_elsewhere(const RegisteredPair& pair, bool is_whole) {
 }
 
 }  // namespace
+
+Scan corrected(const Scan& scan, const Eigen::Matrix4d& correction) {
+  Scan result = scan;
+  result.site_from_scan = correction * scan.site_from_scan;
+  return result;
+}
 
 OutlinedPair outlined(const ScanPair& scans, unsigned threads) {
   const std::vector<ScanOutline> seen = outlines({scans.before, scans.after}, threads);

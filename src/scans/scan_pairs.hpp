@@ -43,6 +43,9 @@ struct Displacement {
 };
 Displacement displacement_by(const Eigen::Matrix4d& correction, const Eigen::Vector3d& centre);
 
+/// The scan with its points moved; its area stays.
+Scan corrected(const Scan& scan, const Eigen::Matrix4d& correction);
+
 /// True if the ground that did not change differs by over 10 mm, and by three times what the
 /// scatter of the points explains.
 bool leaves_difference(const SurfacePair& pair);

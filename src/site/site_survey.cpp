@@ -8,6 +8,7 @@
 
 #include <excavplan/scans/scan_terrain.hpp>
 
+#include "scans/scan_pairs.hpp"
 #include "scans/scan_reading.hpp"
 #include "site/site_grid.hpp"
 #include "site/tracks.hpp"
@@ -81,40 +82,38 @@ bool fits_ground(const DensityEstimate& estimate) {
   });
 }
 
-}  // namespace
+using Cells = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
-GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings) {
-  const double fresh = settings.soil.void_ratio_loose;
-  GroundState ground = unseen_ground(extent_of(scan, 0), *settings.cell_size, fresh);
-  const HeightMap grid = ground.terrain.bank;
-  Terrain seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain;
-  ground.terrain.bank = std::move(seen.bank);
-  if (seen.obstacles.size() > 0) ground.terrain.obstacles = std::move(seen.obstacles);
-  const auto known = !ground.terrain.bank.z.isNaN();
-  ground.seen = known.select(time, grid.z);
-  ground.deviation = known.select(first_sd, grid.z);
-  ground.frame = settings.frame;
-  ground.soil = settings.soil.name;
-  return ground;
-}
-
-/// Takes in what no scan showed before.
-void add_new_ground(const Scan& scan, double time, GroundState& ground) {
-  const HeightMap grid = ground.terrain.bank;
-  if (!grid.z.isNaN().any()) return;
-  const HeightMap seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain.bank;
-  auto is_new = (grid.z.isNaN() && !seen.z.isNaN()).eval();
-  if (ground.terrain.obstacles.size() > 0) is_new = is_new && ground.terrain.obstacles.isNaN();
-  ground.terrain.bank.z = is_new.select(seen.z, grid.z);
+/// Enters bank that a scan shows for the first time.
+void enter(const HeightMap& seen, const Cells& is_new, double time, GroundState& ground) {
+  ground.terrain.bank.z = is_new.select(seen.z, ground.terrain.bank.z).eval();
   ground.terrain.loose = is_new.select(0.0, ground.terrain.loose).eval();
   ground.seen = is_new.select(time, ground.seen).eval();
   ground.deviation = is_new.select(first_sd, ground.deviation).eval();
 }
 
-Scan registered(Scan scan, const DensityEstimate& estimate) {
-  if (estimate.registration)
-    scan.site_from_scan = estimate.registration->correction * scan.site_from_scan;
-  return scan;
+/// Takes in what no scan showed before.
+void add_new_ground(const Scan& scan, double time, GroundState& ground) {
+  const HeightMap& grid = ground.terrain.bank;
+  if (!grid.z.isNaN().any()) return;
+  const HeightMap seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain.bank;
+  Cells is_new = grid.z.isNaN() && !seen.z.isNaN();
+  if (ground.terrain.obstacles.size() > 0) is_new = is_new && ground.terrain.obstacles.isNaN();
+  enter(seen, is_new, time, ground);
+}
+
+}  // namespace
+
+GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings) {
+  const double fresh = settings.soil.void_ratio_loose;
+  GroundState ground = unseen_ground(extent_of(scan, 0), *settings.cell_size, fresh);
+  const HeightMap& grid = ground.terrain.bank;
+  Terrain seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain;
+  if (seen.obstacles.size() > 0) ground.terrain.obstacles = std::move(seen.obstacles);
+  enter(seen.bank, !seen.bank.z.isNaN(), time, ground);
+  ground.frame = settings.frame;
+  ground.soil = settings.soil.name;
+  return ground;
 }
 
 SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, GroundState ground) {
@@ -133,7 +132,9 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, Gro
   result.fits = fits_ground(estimate);
   if (result.fits) {
     result.ground = std::move(*estimate.ground_after);
-    add_new_ground(registered(event.scan, estimate), event.time, result.ground);
+    const auto& moved_by = estimate.registration;
+    add_new_ground(moved_by ? corrected(event.scan, moved_by->correction) : event.scan, event.time,
+                   result.ground);
     if (is_apart) estimate = estimate_at_machine(event, settings, ground);
   } else {
     result.ground = std::move(ground);
