@@ -96,7 +96,7 @@ class PlainSite {
     if (top_.states("files")) read_files(job);
     if (top_.states("start_pose")) {
       JsonObject pose = top_.object("start_pose");
-      job.start = BasePose{pose.number("x"), pose.number("y"), pose.number("heading_rad")};
+      job.start = BasePose{pose.number("x"), pose.number("y"), 0.0, pose.number("heading_rad")};
     }
     each("keep_out", [&](JsonObject& object, const nlohmann::json& part) {
       KeepOut keep_out = {object.text_or("kind", ""), polygon_of(object, "polygon", part), {}};

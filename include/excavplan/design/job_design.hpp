@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <excavplan/design/design_words.hpp>
+#include <excavplan/machine/base_pose.hpp>
 
 /// @file
 /// What a job asks for beside its surface: where soil goes, and what must not be touched.
@@ -47,13 +48,6 @@ struct JobTruck {
   double target_mass = 0.0;  ///< of a load [kg], > 0
 };
 
-/// A pose of the machine in the site's plane.
-struct BasePose {
-  double x = 0.0;        ///< [m]
-  double y = 0.0;        ///< [m]
-  double heading = 0.0;  ///< from x to y [rad]
-};
-
 /// A job as its description says it.
 struct JobDesign {
   std::string name;
@@ -62,7 +56,7 @@ struct JobDesign {
   std::string scan_file = {};             ///< the first scan; empty: none
   double tolerance = 0.03;                ///< [m], > 0
   double edge_margin = 0.1;               ///< CutOptions::edge_margin [m]
-  std::optional<BasePose> start = {};
+  std::optional<BasePose> start = {};  ///< z: 0
   std::vector<KeepOut> keep_out = {};
   std::vector<JobObstacle> obstacles = {};
   std::vector<DumpArea> dump_areas = {};

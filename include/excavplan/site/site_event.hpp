@@ -5,25 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Geometry>
-
 #include <excavplan/density/density_estimate.hpp>
+#include <excavplan/machine/base_pose.hpp>
 
 /// @file
 /// What a site is told, and what it answers.
 
 namespace excavplan {
-
-/// Where a machine stands in the frame of its site: its swing axis at ground level.
-struct BasePose {
-  double x = 0.0;        ///< [m]
-  double y = 0.0;        ///< [m]
-  double z = 0.0;        ///< [m]
-  double heading = 0.0;  ///< of the machine's x axis from that of the site, to the left [rad]
-
-  Eigen::Isometry3d site_from_machine() const;  ///< level: a heading and a shift
-  bool is_origin() const { return x == 0.0 && y == 0.0 && z == 0.0 && heading == 0.0; }
-};
 
 /// What a plan foretold of the dig that was then driven: plan_dig(), or a result of plan-path.
 struct ForetoldDig {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/site/site_event.hpp>
+#include <excavplan/machine/base_pose.hpp>
 
 namespace excavplan {
 
