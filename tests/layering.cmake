@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.24)
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
 set(rooms base optimisation ground change soil belief machine earth simulation sensing calibration planning
-  kit clouds design scans logs efficiency images recording density site paper experiments results maps drawing
+  kit clouds design scans logs efficiency images recording density site job trial paper experiments results maps drawing
   figures robot)
 set(base_may_use "")
 set(optimisation_may_use "")
@@ -31,11 +31,14 @@ set(images_may_use clouds scans)
 set(recording_may_use clouds scans images)
 set(density_may_use ground change soil machine simulation calibration scans logs)
 set(site_may_use ground change soil belief machine simulation planning scans density)
+set(job_may_use ground soil belief machine simulation planning scans design density site)
+set(trial_may_use
+  ground change soil belief machine earth simulation sensing planning clouds scans design density site job)
 set(paper_may_use change clouds scans density)
 set(experiments_may_use
   ground change soil machine simulation sensing calibration planning scans density)
 set(results_may_use ground change soil machine simulation sensing calibration planning kit clouds scans
-  efficiency recording density experiments)
+  efficiency recording density experiments job trial)
 set(maps_may_use ground change simulation sensing planning)
 set(drawing_may_use ground machine)
 set(figures_may_use

@@ -9,8 +9,9 @@
 #include <excavplan/soil/soil.hpp>
 
 /// @file
-/// Digs along any line of a site (docs/methods.md#lines). The ground stays in the cells of the site:
-/// a simulator digs a view of them along the line, and what it changed there enters the cells.
+/// Digs along any line of a site (docs/methods.md#lines). The ground stays in the cells of the
+/// site: a simulator digs a view of them along the line, and what it changed there enters the
+/// cells.
 
 namespace excavplan {
 
@@ -23,9 +24,9 @@ struct DigLine {
   Eigen::Vector2d place(double x, double y) const;  ///< of a point beside the line, in the site [m]
 };
 
-/// The line of a machine that has swung to the left by `swung` [rad], or of a lane: parallel to that
-/// line, so far to its left [m]. In a lane the tooth is `x` along the line, the machine swings on by
-/// atan2(lane, x) and the front reaches out to hypot(x, lane).
+/// The line of a machine that has swung to the left by `swung` [rad], or of a lane: parallel to
+/// that line, so far to its left [m]. In a lane the tooth is `x` along the line, the machine swings
+/// on by atan2(lane, x) and the front reaches out to hypot(x, lane).
 DigLine dig_line(const BasePose& base, double swung = 0.0, double lane = 0.0);
 
 /// Void ratios of the soil of a terrain where it states none [-].
@@ -49,10 +50,10 @@ class GroundAlong {
   const Terrain& terrain() const { return along_; }  ///< to dig on: x along the line, z of the path
   const DigLine& line() const { return line_; }
 
-  /// Makes a dig of terrain() one of the site: its patch is of the site's cells, which lose and gain
-  /// what the view's lost and gained over them. Cells are lowered to the level of the cut, not by its
-  /// depth. So what the site loses is not quite what the view lost; payload and soil that came to
-  /// lie are scaled by their ratio, and solids are kept to rounding.
+  /// Makes a dig of terrain() one of the site: its patch is of the site's cells, which lose and
+  /// gain what the view's lost and gained over them. Cells are lowered to the level of the cut, not
+  /// by its depth. So what the site loses is not quite what the view lost; payload and soil that
+  /// came to lie are scaled by their ratio, and solids are kept to rounding.
   /// @param site  on which the object was made
   /// @throws Error (bad_input) if the patch of the dig is not of terrain()
   void enter(const Terrain& site, const SoilVoids& voids, DigResult& dig) const;

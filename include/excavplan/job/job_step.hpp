@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/base/warning.hpp>
+#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/machine/base_pose.hpp>
+#include <excavplan/machine/dig_path.hpp>
+
+/// @file
+/// What a job asks of its machine, one step after the other, and what it is told of each.
+
+namespace excavplan {
+
+/// What the machine does in a step.
+enum class JobAction {
+  dig,     ///< digs and dumps, for volume
+  finish,  ///< the same along the floor, for its shape
+  move,    ///< goes to another place
+  scan,    ///< scans the ground from where it stands
+  wait,    ///< for what the reason says
+  stop,    ///< the job has ended, as the reason says
+};
+/// "dig", as in files.
+const char* name(JobAction action);
+
+/// What a step is expected to lift and cost.
+struct ForetoldStep {
+  double payload_mass = 0.0;                 ///< [kg]
+  double energy = 0.0;                       ///< of the joints over the whole cycle [J]
+  double time = 0.0;                         ///< of the whole cycle [s]
+  std::array<double, 2> payload_interval{};  ///< 95 % [kg]
+  std::array<double, 2> energy_interval{};   ///< 95 % [J]
+};
+
+/// One step of a job.
+struct JobStep {
+  long long id = 0;                  ///< rises from step to step
+  JobAction what = JobAction::stop;  ///< what to do
+  BasePose base;                     ///< where the machine stands; of a move: where it goes
+  double swung = 0.0;                ///< of the line of the dig, to the left of the base [rad]
+  double lane = 0.0;                 ///< of that line to the left of the swing axis [m]
+  DigPath path;                      ///< of a dig, in the frame of its line (dig_line())
+  /// Of the bucket pin where the bucket opens, in the site's frame [m].
+  Eigen::Vector3d dump = Eigen::Vector3d::Zero();
+  std::optional<int> truck;       ///< that is loaded, from 1
+  ForetoldStep predicted;         ///< of a dig
+  bool trustworthy = true;        ///< false after a warning that ends trust
+  std::vector<Warning> warnings;  ///< about this step
+  std::string reason;             ///< of a scan, a wait or a stop
+};
+
+/// What became of a step.
+struct StepReport {
+  std::optional<Scan> scan;            ///< of the ground after it, in the site's frame
+  double time = 0.0;                   ///< when, since 1970-01-01 UTC [s]
+  std::optional<double> payload_mass;  ///< by the scale [kg]
+  std::optional<double> joint_work;    ///< of the joints over the whole cycle [J]
+  bool stalled = false;                ///< the machine could not finish the path
+  std::optional<BasePose> base;        ///< where the machine stands after a move
+};
+
+/// Who decides the steps: SiteJob, or another policy that is to be compared with it.
+class JobPlanner {
+ public:
+  virtual ~JobPlanner() = default;
+  /// The step to do now; the same until done() is told of it.
+  virtual JobStep next() = 0;
+  /// @param step  JobStep::id. Of another than the present one nothing changes.
+  virtual void done(long long step, const StepReport& report) = 0;
+};
+
+}  // namespace excavplan
