@@ -65,6 +65,9 @@ excavplan_install(images
 excavplan_install(survey
   SUMMARY "Density from scans, and experiments"
   REQUIRES_PUBLIC excavplan-clouds)
+excavplan_install(jobs
+  SUMMARY "A whole job from its design, and its trial against hidden truth"
+  REQUIRES_PUBLIC excavplan-survey excavplan-design)
 if(TARGET excavplan_paper)
   set(runtime Runtime)
   if(EXCAVPLAN_PAPER_APART)
@@ -78,7 +81,7 @@ if(TARGET excavplan_paper)
 endif()
 excavplan_install(results
   SUMMARY "Results as JSON, and as maps of the ground"
-  REQUIRES_PUBLIC excavplan-survey excavplan-recordings)
+  REQUIRES_PUBLIC excavplan-jobs excavplan-recordings)
 set(requires "")
 if(excavplan_with_cairo)
   set(requires cairo fontconfig)
