@@ -26,6 +26,7 @@ constexpr int scan_poses = 12;         // a phase, while start points are compar
 constexpr double scan_lift = 0.1;      // tip travel between poses of a lift, likewise [m]
 constexpr int scan_per_metre = 20;     // start points
 constexpr double scan_tie = 1e-9;      // margins closer than this count as equal [rad]
+constexpr int bisections = 40;         // of a step of the penetration, to the floor
 constexpr double same_posture = 1e-6;  // joints closer than this [rad]
 constexpr int ground_intervals = 16;   // where the ground is looked up under the bucket
 
@@ -86,6 +87,8 @@ void check(const DigPathOptions& options) {
   require(options.max_depth > 0.0, "DigPathOptions::max_depth", options.max_depth, "above 0 m");
   require(std::isfinite(options.track_margin), "DigPathOptions::track_margin", options.track_margin,
           "finite");
+  require(std::abs(options.drag_grade) <= 1.0, "DigPathOptions::drag_grade", options.drag_grade,
+          "in -1 .. 1 rad");
   require(options.lift_clearance >= 0.0 && std::isfinite(options.lift_clearance),
           "DigPathOptions::lift_clearance", options.lift_clearance, "at least 0 m and finite");
 }
@@ -147,6 +150,7 @@ class Layout {
         sampling_(sampling),
         beta_(machine.beta()) {
     path_.parameters = parameters;
+    path_.drag_grade = options.drag_grade;
   }
 
   std::optional<Infeasible> lay_out(double start_x) {
@@ -180,6 +184,7 @@ class Layout {
   std::optional<Infeasible> scoop();
   std::optional<Infeasible> lift();
   std::optional<Infeasible> raise(DigPose pose);
+  std::optional<Infeasible> raise_to_floor(DigPose& pose, double& raised, double turned);
 
   DigPhase first_phase() const {
     if (path_.parameters.penetration_length > 0.0) return DigPhase::penetrate;
@@ -206,6 +211,12 @@ class Layout {
   }
 
   std::optional<Infeasible> add(double distance, const DigPose& pose);
+  double floor_at(double x) const;
+  double tip_above_floor(double s) const;
+  double length_to_floor(double length) const;
+  double missing_height(const LinkPositions& at) const;
+  std::optional<Infeasible> solve_drag(DigPose& pose, const DigPose& start, double s) const;
+  std::optional<Infeasible> keep_above_floor(DigPose& pose, const DigPose& start, double s);
   int steps(double tip_travel) const;
   int stride(int count) const { return sampling_ == Sampling::ends ? std::max(1, count) : 1; }
   /// No straight line longer than this stays within reach.
@@ -217,6 +228,7 @@ class Layout {
   const DigPathOptions& options_;
   Sampling sampling_;
   double beta_;
+  double first_z_ = 0.0;  ///< of the tip where the penetration begins [m]
   DigPath path_;
 };
 
@@ -243,18 +255,67 @@ std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
   return std::nullopt;
 }
 
+/// The floor where the bucket has been or will be; -infinity where there is none.
+double Layout::floor_at(double x) const {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  if (!options_.floor || x > path_.start_x) return none;
+  const double floor = options_.floor(x);
+  return std::isnan(floor) ? none : floor;
+}
+
+/// How far bucket and tip are below the floor, less than 0 if above it.
+double Layout::missing_height(const LinkPositions& at) const {
+  double missing = floor_at(at.tip.x()) - at.tip.y();
+  for (const Eigen::Vector2d& corner : machine_.bucket.profile) {
+    const Eigen::Vector2d point = bucket_point(at, corner);
+    missing = std::max(missing, floor_at(point.x()) - point.y());
+  }
+  return missing;
+}
+
+/// Of the tip, so far along the line of penetration.
+double Layout::tip_above_floor(double s) const {
+  const double angle = path_.parameters.penetration_angle;
+  return first_z_ - s * std::sin(angle) - floor_at(path_.start_x - s * std::cos(angle));
+}
+
+/// The length of penetration at which the tip meets the floor, at most `length`.
+double Layout::length_to_floor(double length) const {
+  if (!options_.floor) return length;
+  double clear = 0.0;
+  while (clear < length) {
+    const double next = std::min(clear + options_.step, length);
+    if (tip_above_floor(next) < 0.0) {
+      double low = clear, high = next;
+      for (int i = 0; i < bisections; ++i) {
+        const double middle = 0.5 * (low + high);
+        (tip_above_floor(middle) < 0.0 ? high : low) = middle;
+      }
+      return low;
+    }
+    clear = next;
+  }
+  return length;
+}
+
 /// The tip moves down a straight line with the bucket floor along it. An empty line still gives the
 /// first pose of the path.
 std::optional<Infeasible> Layout::penetrate() {
   const double angle = path_.parameters.penetration_angle;
-  const double length = std::min(path_.parameters.penetration_length, longest_line());
+  first_z_ = std::max(path_.ground_z, floor_at(path_.start_x));
+  const double wanted = std::min(path_.parameters.penetration_length, longest_line());
+  const double length = length_to_floor(wanted);
+  if (length < wanted) {
+    path_.parameters.penetration_length = length;
+    path_.meets_floor = true;
+  }
   const double inwards = std::cos(angle), down = std::sin(angle);
   const int count = length > 0.0 ? steps(length) : 0;
   for (int i = 0; i <= count; i += stride(count)) {
     const double s = count > 0 ? length * i / count : 0.0;
     DigPose pose;
     pose.phase = first_phase();
-    pose.bucket = {path_.start_x - s * inwards, path_.ground_z - s * down, angle};
+    pose.bucket = {path_.start_x - s * inwards, first_z_ - s * down, angle};
     const auto joints = inverse_kinematics(machine_, pose.bucket);
     if (const auto* failed = std::get_if<Unreachable>(&joints)) {
       return stop(pose.phase, s, *failed);
@@ -265,48 +326,97 @@ std::optional<Infeasible> Layout::penetrate() {
   return std::nullopt;
 }
 
-/// The tip moves level, the bucket does not turn in the arm; so it turns in the world, and its heel
-/// comes down on the ground.
+/// Joints and floor angle of a pose of the drag whose tip is given.
+std::optional<Infeasible> Layout::solve_drag(DigPose& pose, const DigPose& start, double s) const {
+  pose.bucket.floor_angle = start.bucket.floor_angle;
+  const auto joints = options_.drag_keeps_angle
+                          ? inverse_kinematics(machine_, pose.bucket)
+                          : inverse_kinematics_fixed_bucket(machine_, pose.bucket.x, pose.bucket.z,
+                                                            start.joints[2]);
+  if (const auto* failed = std::get_if<Unreachable>(&joints)) return stop(pose.phase, s, *failed);
+  pose.joints = std::get<JointAngles>(joints);
+  if (!options_.drag_keeps_angle) {
+    pose.bucket.floor_angle += start.joints.sum() - pose.joints.sum();
+  }
+  return std::nullopt;
+}
+
+/// Raises a pose of the drag as far as the floor asks for.
+std::optional<Infeasible> Layout::keep_above_floor(DigPose& pose, const DigPose& start, double s) {
+  const double line = pose.bucket.z;
+  pose.bucket.z = std::max(line, floor_at(pose.bucket.x));
+  if (auto stopped = solve_drag(pose, start, s)) return stopped;
+  if (!options_.floor) return std::nullopt;
+  const double missing = missing_height(link_positions(machine_, pose.joints));
+  path_.meets_floor |= missing > 0.0 || pose.bucket.z > line;
+  if (!(missing > 0.0)) return std::nullopt;
+  pose.bucket.z += missing;
+  return solve_drag(pose, start, s);
+}
+
+/// The tip moves along a line or the floor, mostly without a turn of the bucket in the arm; so it
+/// turns in the world, and its heel comes down on the ground.
 std::optional<Infeasible> Layout::drag() {
   const DigPose start = path_.poses.back();
+  const double fall = std::tan(options_.drag_grade);
   path_.heel_clearance = start.bucket.floor_angle;
   const double length = std::min(path_.parameters.drag_length, longest_line());
   const int count = length > 0.0 ? steps(length) : -1;
+  DigPose last = start;
   for (int i = 0; i <= count; i += stride(count)) {
     const double s = length * i / count;
     DigPose pose = start;
     pose.phase = DigPhase::drag;
     pose.bucket.x -= s;
-    const auto joints =
-        inverse_kinematics_fixed_bucket(machine_, pose.bucket.x, pose.bucket.z, start.joints[2]);
-    if (const auto* failed = std::get_if<Unreachable>(&joints)) {
-      return stop(pose.phase, s, *failed);
+    pose.bucket.z -= s * fall;
+    if (auto stopped = i == 0 ? solve_drag(pose, start, s) : keep_above_floor(pose, start, s)) {
+      return stopped;
     }
-    pose.joints = std::get<JointAngles>(joints);
     if (i == 0 && (pose.joints - start.joints).norm() > same_posture) {  // arm folded past the tip
       const double nearest =
           std::hypot(pose.bucket.x - machine_.boom_pin.x(), pose.bucket.z - machine_.boom_pin.y());
       return stop(Reason::out_of_reach, nearest, nearest, pose.phase, s);
     }
-    pose.bucket.floor_angle += start.joints.sum() - pose.joints.sum();
-    path_.heel_clearance = std::min(path_.heel_clearance, pose.bucket.floor_angle);
-    if (pose.bucket.floor_angle < options_.min_heel_clearance) {
-      return stop(Reason::heel_contact, pose.bucket.floor_angle, options_.min_heel_clearance,
-                  pose.phase, s);
+    const double descent =
+        i == 0 ? options_.drag_grade
+               : std::atan2(last.bucket.z - pose.bucket.z, last.bucket.x - pose.bucket.x);
+    const double clearance = pose.bucket.floor_angle - descent;
+    path_.heel_clearance = std::min(path_.heel_clearance, clearance);
+    if (clearance < options_.min_heel_clearance) {
+      return stop(Reason::heel_contact, clearance, options_.min_heel_clearance, pose.phase, s);
     }
     if (i == 0) continue;  // stored by the penetration
     if (auto stopped = add(s, pose)) return stopped;
+    last = pose;
   }
   return std::nullopt;
 }
 
-/// Only the bucket turns, until the line from bucket pin to tip is level.
+/// The pose with the bucket pin so far above where it is, which the floor asks for.
+std::optional<Infeasible> Layout::raise_to_floor(DigPose& pose, double& raised, double turned) {
+  const LinkPositions at = link_positions(machine_, pose.joints);
+  raised = std::max(raised, missing_height(at));
+  if (!(raised > 0.0)) return std::nullopt;
+  path_.meets_floor = true;
+  pose.bucket.z += raised;
+  const auto joints = inverse_kinematics(machine_, pose.bucket);
+  if (const auto* failed = std::get_if<Unreachable>(&joints)) {
+    return stop(DigPhase::scoop, turned, *failed);
+  }
+  pose.joints = std::get<JointAngles>(joints);
+  return std::nullopt;
+}
+
+/// Only the bucket turns, until the line from bucket pin to tip is level; over a floor the pin
+/// rises with it.
 std::optional<Infeasible> Layout::scoop() {
   const DigPose start = path_.poses.back();
   const LinkPositions at = link_positions(machine_, start.joints);
   const double turn = start.bucket.floor_angle + beta_;
   const double allowed = machine_.limits[2].upper - start.joints[2];
   const int count = steps(turn * machine_.bucket_length);
+  double raised = 0.0;
+  double deepest = start.bucket.z;
   for (int i = stride(count); i <= count; i += stride(count)) {
     const double turned = std::min(turn * i / count, allowed);
     const double phi3 = start.bucket.floor_angle - turned + beta_ - pi;
@@ -316,6 +426,10 @@ std::optional<Infeasible> Layout::scoop() {
     pose.bucket = {at.bucket_pin.x() + machine_.bucket_length * std::cos(phi3),
                    at.bucket_pin.y() + machine_.bucket_length * std::sin(phi3),
                    start.bucket.floor_angle - turned};
+    if (options_.floor) {
+      if (auto stopped = raise_to_floor(pose, raised, turned)) return stopped;
+      deepest = std::min(deepest, pose.bucket.z);
+    }
     if (auto stopped = add(turned, pose)) return stopped;
     if (turn * i / count > allowed) {
       Infeasible stopped = stop(Reason::joint_limit, start.joints[2] + turn,
@@ -324,9 +438,8 @@ std::optional<Infeasible> Layout::scoop() {
       return stopped;
     }
   }
-  const bool passes_bottom = turn > pi / 2.0;
-  const double deepest = at.bucket_pin.y() - machine_.bucket_length;
-  path_.overcut = passes_bottom ? start.bucket.z - deepest : 0.0;
+  if (!options_.floor && turn > pi / 2.0) deepest = at.bucket_pin.y() - machine_.bucket_length;
+  path_.overcut = start.bucket.z - deepest;
   return std::nullopt;
 }
 

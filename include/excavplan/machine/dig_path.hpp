@@ -43,6 +43,8 @@ struct DigPath {
   double heel_clearance = 0.0;  ///< smallest floor angle during the drag [rad]
   LimitMargin limit_margin;     ///< smallest over all poses
   double overcut = 0.0;         ///< how far the scoop goes below the drag line [m], >= 0
+  double drag_grade = 0.0;      ///< DigPathOptions::drag_grade
+  bool meets_floor = false;     ///< DigPathOptions::floor made it shallower
 };
 
 /// Why a dig cannot be driven: the first thing that fails.
@@ -84,6 +86,16 @@ struct DigPathOptions {
   double track_margin = 0.5;
   /// The lowest point of the bucket ends this far above the ground [m]; ours.
   double lift_clearance = 0.3;
+  /// Surface below which no part of the bucket cuts, over its whole width [m]; NaN: none there;
+  /// empty: none. The path becomes shallower: the penetration ends on it, the drag follows it where
+  /// the line of the drag is deeper, the scoop rises.
+  GroundProfile floor = {};
+  /// Of the line of the drag, positive if it rises away from the machine, within 1 rad [rad]; 0 in
+  /// the paper.
+  double drag_grade = 0.0;
+  /// The bucket keeps its attitude in the drag, for a finishing pass; in the paper it keeps its
+  /// angle to the arm.
+  bool drag_keeps_angle = false;
 };
 
 /// Options for a path that was planned on another measurement of the same ground. Planned paths

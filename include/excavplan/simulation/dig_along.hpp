@@ -29,10 +29,11 @@ struct DigLine {
 /// on by atan2(lane, x) and the front reaches out to hypot(x, lane).
 DigLine dig_line(const BasePose& base, double swung = 0.0, double lane = 0.0);
 
-/// Void ratios of the soil of a terrain where it states none [-].
+/// How much of a soil is grains.
 struct SoilVoids {
-  double bank = 0.0;
-  double loose = 0.0;  ///< of soil just dug
+  double bank = 0.0;           ///< void ratio where a terrain states none [-]
+  double loose = 0.0;          ///< of soil just dug, and where a terrain states none [-]
+  double grain_density = 0.0;  ///< [kg/m^3]
 };
 /// @throws Error (bad_input) as bank_state()
 SoilVoids soil_voids(const SoilKind& soil, double density_percent);
@@ -40,8 +41,8 @@ SoilVoids soil_voids(const SoilKind& soil, double density_percent);
 /// The ground of a site along a line.
 class GroundAlong {
  public:
-  /// Looks at the ground around the line, each cell the mean of nine places. Unknown where a
-  /// majority of them is.
+  /// Looks at the ground around the line: a cell is the mean of nine places in it, unknown unless
+  /// most of them are known.
   /// @param extent  along the line and across it [m]
   /// @param cell_size  of the view [m]
   /// @throws Error (bad_input) as require_terrain() and flat_ground()
@@ -50,10 +51,11 @@ class GroundAlong {
   const Terrain& terrain() const { return along_; }  ///< to dig on: x along the line, z of the path
   const DigLine& line() const { return line_; }
 
-  /// Makes a dig of terrain() one of the site: its patch is of the site's cells, which lose and
-  /// gain what the view's lost and gained over them. Cells are lowered to the level of the cut, not
-  /// by its depth. So what the site loses is not quite what the view lost; payload and soil that
-  /// came to lie are scaled by their ratio, and solids are kept to rounding.
+  /// Makes a dig of terrain() one of the site: its patch is of the site's cells. What happened to a
+  /// cell of the view happens to those cells of the site whose centre is in it: they are lowered to
+  /// the level of the cut, not by its depth, and gain what came to lie. Since that is not quite the
+  /// soil that the view lost, payload and soil that came to lie are scaled by the ratio: solids are
+  /// kept to rounding.
   /// @param site  on which the object was made
   /// @throws Error (bad_input) if the patch of the dig is not of terrain()
   void enter(const Terrain& site, const SoilVoids& voids, DigResult& dig) const;
