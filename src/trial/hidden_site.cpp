@@ -57,8 +57,8 @@ SiteSensor sensor_of(JsonObject site) {
   sensor.pattern = site.number_or("pattern_sd_at_1m_m", 0.0, 0.0, 10.0);
   sensor.range_power = site.number_or("range_power", 0.0, 0.0, 4.0);
   const std::string mount = site.text("mount");
-  if (mount != "boom" && mount != "cab") {
-    site.fail("mount", "is " + in_quotes(mount) + ", must be boom or cab");
+  if (mount != "boom" && mount != "cab" && mount != "mast") {
+    site.fail("mount", "is " + in_quotes(mount) + ", must be boom, cab or mast");
   }
   sensor.on_boom = mount == "boom";
   sensor.height = site.number("height_m", 0.1, 100.0);

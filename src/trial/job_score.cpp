@@ -23,9 +23,9 @@ constexpr double most_in_keep_out = 0.010;  // [m^3]
 
 double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
-/// Volume of the positive heights of a mask [m^3].
-double volume(const ArrayXXd& height, const Mask& where, double cell) {
-  return cell * cell * (where && height > 0.0).select(height, 0.0).sum();
+/// Volume of the positive heights, each cell by a weight [m^3].
+double volume(const ArrayXXd& height, const ArrayXXd& weight, double cell) {
+  return cell * cell * (height > 0.0).select(weight * height, 0.0).sum();
 }
 
 Deviation deviation(const HiddenSite& site, const HeightMap& gentle, const HeightMap& after) {
@@ -41,7 +41,7 @@ Deviation deviation(const HiddenSite& site, const HeightMap& gentle, const Heigh
 
 /// Volume that changed in a keep-out, of one with a depth what changed below it.
 double changed_in(const KeepOut& keep_out, const HeightMap& before, const ArrayXXd& risen) {
-  const Mask where = cells_in(keep_out.polygon, before);
+  const ArrayXXd where = cells_in(keep_out.polygon, before).cast<double>();
   const double cell = before.cell_size;
   if (keep_out.depth) return volume(-risen - *keep_out.depth, where, cell);
   return volume(risen, where, cell) + volume(-risen, where, cell);
@@ -65,15 +65,15 @@ JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen) 
   const HeightMap before = site.ground.surface();
   require(same_grid(before, after), "score of a job: the ground after is not on the grid of before");
   const ScoredDesign design = scored_design(site.known, before);
-  const Mask inside = !design.height.z.isNaN();
-  require(inside.any(), "score of a job: the design lies nowhere below the ground");
+  require((design.share > 0.0).any(),
+          "score of a job: the design lies nowhere below the ground");
   const double cell = before.cell_size;
   const ArrayXXd risen = after.z - before.z;
-  Mask dump = Mask::Constant(inside.rows(), inside.cols(), false);
+  const ArrayXXd everywhere = ArrayXXd::Ones(risen.rows(), risen.cols());
+  Mask dump = Mask::Constant(risen.rows(), risen.cols(), false);
   for (const DumpArea& area : site.known.job.dump_areas) {
     dump = dump || cells_in(area.polygon, before);
   }
-  const Mask everywhere = Mask::Constant(inside.rows(), inside.cols(), true);
 
   JobScore score;
   const Deviation off = deviation(site, design.gentle, after);
@@ -81,13 +81,13 @@ JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen) 
   score.p95 = off.p95;
   score.beyond_twice = off.beyond_twice;
   score.seen = seen;
-  score.design_cut = volume(before.z - design.height.z, inside, cell);
-  score.left = volume(after.z - design.height.z, inside, cell);
-  score.overdig_inside = volume(design.height.z - after.z, inside, cell);
-  score.overdig_beside = volume(-risen, !inside, cell);
+  score.design_cut = design.below(before.z);
+  score.left = design.below(after.z);
+  score.overdig_inside = volume(design.height.z - after.z, design.share, cell);
+  score.overdig_beside = volume(-risen, 1.0 - design.share, cell);
   score.risen = volume(risen, everywhere, cell);
   score.removed = volume(-risen, everywhere, cell);
-  score.spilled = volume(risen, !dump, cell);
+  score.spilled = volume(risen, (!dump).cast<double>(), cell);
   score.by_truck = site.known.job.dump_areas.empty();
   for (const KeepOut& keep_out : site.known.job.keep_out) {
     score.keep_out += changed_in(keep_out, before, risen);

@@ -8,11 +8,16 @@ namespace excavplan {
 
 /// The design on the cells of the true ground.
 struct ScoredDesign {
-  HeightMap height;  ///< of the design inside its footprint, NaN outside of it
-  HeightMap gentle;  ///< the same without faces steeper than CutOptions::steepest
+  HeightMap height;       ///< of the design inside its footprint, NaN outside of it
+  Eigen::ArrayXXd share;  ///< of each cell in the footprint [-]
+  /// The height of cells that are whole and no face steeper than CutOptions::steepest; else NaN.
+  HeightMap gentle;
+
+  /// Volume from the design up to a surface, where that is higher [m^3].
+  double below(const Eigen::ArrayXXd& surface) const;
 };
 
-/// The footprint: cells that the design covers whole and where it lies below the ground before.
+/// The footprint: where the design lies below the ground before.
 ScoredDesign scored_design(const SiteBrief& site, const HeightMap& before);
 
 }  // namespace excavplan

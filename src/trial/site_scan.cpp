@@ -92,7 +92,7 @@ class Look {
         const double met = last_r + (r - last_r) * before / (before - after);
         const double range = met / std::cos(elevation);
         if (is_met && range <= looks_.range && sees(ray)) take(ray, range);
-        elevation += looks_.step.y();
+        elevation += step_at(elevation);
       }
       last_r = r;
       last_z = z;
@@ -105,6 +105,10 @@ class Look {
   double height(const Vector2d& ahead, double r) const {
     return height_at(surface_, place_.sensor.x() + r * ahead.x(),
                      place_.sensor.y() + r * ahead.y());
+  }
+  double step_at(double elevation) const {
+    const double down = std::sin(elevation);
+    return std::max(looks_.step.y(), looks_.spacing * down * down / sensor_.height);
   }
   double steepest() const {
     return std::max(-0.5 * pi + 0.02, -sensor_.tilt - 0.5 * sensor_.view.y());
@@ -158,13 +162,12 @@ struct Registration {
 
 SiteLooks looks_of(const SiteSensor& sensor) {
   if (sensor.on_boom) {
-    return {{1.5, 0.0},     {-75.0 * degree, -25.0 * degree, 25.0 * degree, 75.0 * degree},
-            54.0 * degree,  0.5,
-            7.0,            {0.008, 0.0032}};
+    const std::vector<double> swings = {-75.0 * degree, -25.0 * degree, 25.0 * degree,
+                                        75.0 * degree};
+    return {{1.5, 0.0}, swings, 54.0 * degree, 0.5, 7.0, 0.03, {0.008, 0.0032}};
   }
-  return {{0.6, 0.7},    {-60.0 * degree, 0.0, 60.0 * degree},
-          64.0 * degree, 0.5,
-          12.0,          {0.006, 0.0021}};
+  return {{0.6, 0.7},    {-60.0 * degree, 0.0, 60.0 * degree}, 64.0 * degree, 0.5, 12.0, 0.03,
+          {0.006, 0.0021}};
 }
 
 HeightMap with_obstacles(const HeightMap& surface, const std::vector<JobObstacle>& obstacles) {

@@ -13,7 +13,9 @@
 #include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/random.hpp"
+#include "base/text.hpp"
 #include "ground/grid_cells.hpp"
+#include "trial/dump_places.hpp"
 #include "trial/plan_polygon.hpp"
 #include "trial/scored_design.hpp"
 
@@ -26,6 +28,8 @@ using Eigen::Vector2d;
 constexpr double first_time = 1767225600.0;  // 2026-01-01; ours [s]
 constexpr double tracking_length = 0.5;      // of the error along the tip's travel [m]
 constexpr double share_of_variance = 0.5;    // of that error, and of the one of the whole dig
+
+constexpr double spare_reach = 0.3;          // for what a move landed off; ours [m]
 
 // Streams of a step.
 constexpr std::uint64_t tracking_stream = 1;
@@ -183,12 +187,20 @@ struct TrueSite::State {
         surface.z.block(first->row, first->col, rows, cols);
   }
 
+  void require_reach(const JobStep& job, const Vector2d& at) const {
+    const double away = std::hypot(at.x() - real.x, at.y() - real.y);
+    const double reach = pin_reach(machine, job.dump.z() - real.z);
+    require(away <= reach + spare_reach, "distance of its dump from the swing axis [m]", away,
+            "at most " + readable(reach) + " at that height");
+  }
+
   TrueStep dig(const JobStep& job);
   void dump(const JobStep& job, const DigResult& dig, const Vector2d& at);
   TrueStep move(const JobStep& job);
   Scan scan();
   void take_scan(TrueStep& done) {
     done.report.scan = scan();
+    done.scan_time = options.scan_time;
     done.time += options.scan_time;
   }
 
@@ -224,6 +236,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
                                   soil_voids(site.soil, density), path);
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
+  require_reach(job, dump_at);
   dump(job, dug, dump_at);
   const Solids after(ground, site.soil);
   solids.cut += after.cut_since(before.bank.z, before.bank_void_ratio);

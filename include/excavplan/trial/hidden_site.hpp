@@ -23,7 +23,7 @@ struct SiteSensor {
   double noise = 0.0;          ///< sd at 1 m of a range, of each return by itself [m]
   double pattern = 0.0;        ///< sd at 1 m of what neighbouring returns share [m]
   double range_power = 0.0;    ///< both grow with the range to this power
-  bool on_boom = false;        ///< else on the cab
+  bool on_boom = false;        ///< else on the cab, or on a mast above it
   double height = 3.0;         ///< over the ground under the machine [m]
   double tilt = 0.0;           ///< of its axis, below the horizontal [rad]
   Eigen::Vector2d view{0, 0};  ///< field of view across and along the tilt [rad]

@@ -25,7 +25,8 @@ struct SiteLooks {
   double sector = 0.0;          ///< of each look [rad]
   double nearest = 0.0;         ///< in plan from the sensor [m]
   double range = 0.0;           ///< farthest return [m]
-  Eigen::Vector2d step{0, 0};   ///< between rays, across and along the tilt [rad]
+  double spacing = 0.03;        ///< least between returns of one plane, on level ground [m]
+  Eigen::Vector2d step{0, 0};   ///< between rays, across and, at least, along the tilt [rad]
 };
 SiteLooks looks_of(const SiteSensor& sensor);
 

@@ -39,6 +39,7 @@ struct TruthOptions {
 struct TrueStep {
   StepReport report;          ///< what the planner is told
   double time = 0.0;          ///< of the whole cycle, the move or the scan [s]
+  double scan_time = 0.0;     ///< of a scan, part of it [s]
   double energy = 0.0;        ///< of the joints over it [J]
   double payload_mass = 0.0;  ///< true [kg]
   std::optional<Stall> stall;
@@ -67,7 +68,7 @@ class TrueSite {
   TrueSite& operator=(TrueSite&&) noexcept;
 
   /// Does a step. @throws Error (bad_input) naming the step, if its path or its dump leave the
-  /// ground
+  /// ground, or the dump is out of reach
   TrueStep execute(const JobStep& step);
   /// A scan from where the machine stands.
   Scan scan();

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <excavplan/trial/job_reference.hpp>
+#include <excavplan/trial/job_trial.hpp>
+
+#include "results/json_fwd.hpp"
+
+namespace excavplan {
+
+/// The keys of simulate-site.
+Json trial_json(const JobTrial& trial);
+/// R and B.
+Json reference_json(const JobReference& reference);
+
+/// The lines of the log of a job (docs/formats.md#job-log) that a step gives, each with its end.
+std::string log_lines(const TrialStep& step);
+/// Its last line.
+std::string log_end(const JobTrial& trial);
+
+}  // namespace excavplan
