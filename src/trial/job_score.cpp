@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/trial/job_score.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <excavplan/design/cut_and_fill.hpp>
+
+#include "base/check.hpp"
+#include "ground/grid_cells.hpp"
+#include "trial/plan_polygon.hpp"
+#include "trial/scored_design.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::ArrayXXd;
+
+constexpr double most_beyond_twice = 0.01;
+constexpr double least_seen = 0.99;
+constexpr double most_in_keep_out = 0.010;  // [m^3]
+
+double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+
+/// Volume of the positive heights of a mask [m^3].
+double volume(const ArrayXXd& height, const Mask& where, double cell) {
+  return cell * cell * (where && height > 0.0).select(height, 0.0).sum();
+}
+
+Deviation deviation(const HiddenSite& site, const HeightMap& gentle, const HeightMap& after) {
+  DesignSurface zone;
+  zone.name = site.known.design.name;
+  zone.shape = gentle;
+  CutOptions options;
+  options.tolerance = site.known.job.tolerance;
+  options.edge_margin = site.known.job.edge_margin;
+  options.least_known_share = 0.0;
+  return cut_and_fill(zone, after, options).deviation;
+}
+
+/// Volume that changed in a keep-out, of one with a depth what changed below it.
+double changed_in(const KeepOut& keep_out, const HeightMap& before, const ArrayXXd& risen) {
+  const Mask where = cells_in(keep_out.polygon, before);
+  const double cell = before.cell_size;
+  if (keep_out.depth) return volume(-risen - *keep_out.depth, where, cell);
+  return volume(risen, where, cell) + volume(-risen, where, cell);
+}
+
+}  // namespace
+
+double JobScore::left_percent() const { return 100.0 * share(left, design_cut); }
+double JobScore::overdig_percent() const {
+  return 100.0 * share(overdig_inside + overdig_beside, design_cut);
+}
+double JobScore::spill_percent() const {
+  return 100.0 * share(spilled, by_truck ? removed : risen);
+}
+
+HeightMap footprint_of(const HiddenSite& site) {
+  return scored_design(site.known, site.ground.surface()).height;
+}
+
+JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen) {
+  const HeightMap before = site.ground.surface();
+  require(same_grid(before, after), "score of a job: the ground after is not on the grid of before");
+  const ScoredDesign design = scored_design(site.known, before);
+  const Mask inside = !design.height.z.isNaN();
+  require(inside.any(), "score of a job: the design lies nowhere below the ground");
+  const double cell = before.cell_size;
+  const ArrayXXd risen = after.z - before.z;
+  Mask dump = Mask::Constant(inside.rows(), inside.cols(), false);
+  for (const DumpArea& area : site.known.job.dump_areas) {
+    dump = dump || cells_in(area.polygon, before);
+  }
+  const Mask everywhere = Mask::Constant(inside.rows(), inside.cols(), true);
+
+  JobScore score;
+  const Deviation off = deviation(site, design.gentle, after);
+  score.rms = off.rms;
+  score.p95 = off.p95;
+  score.beyond_twice = off.beyond_twice;
+  score.seen = seen;
+  score.design_cut = volume(before.z - design.height.z, inside, cell);
+  score.left = volume(after.z - design.height.z, inside, cell);
+  score.overdig_inside = volume(design.height.z - after.z, inside, cell);
+  score.overdig_beside = volume(-risen, !inside, cell);
+  score.risen = volume(risen, everywhere, cell);
+  score.removed = volume(-risen, everywhere, cell);
+  score.spilled = volume(risen, !dump, cell);
+  score.by_truck = site.known.job.dump_areas.empty();
+  for (const KeepOut& keep_out : site.known.job.keep_out) {
+    score.keep_out += changed_in(keep_out, before, risen);
+  }
+  score.finished = score.p95 <= site.known.job.tolerance &&
+                   score.beyond_twice <= most_beyond_twice && score.seen >= least_seen &&
+                   score.keep_out <= most_in_keep_out;
+  return score;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/trial/true_site.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <excavplan/base/error.hpp>
+#include <excavplan/machine/trajectory.hpp>
+#include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/trial/site_scan.hpp>
+
+#include "base/angles.hpp"
+#include "base/check.hpp"
+#include "base/random.hpp"
+#include "ground/grid_cells.hpp"
+#include "trial/plan_polygon.hpp"
+#include "trial/scored_design.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::ArrayXXd;
+using Eigen::Vector2d;
+
+constexpr double first_time = 1767225600.0;  // 2026-01-01; ours [s]
+constexpr double tracking_length = 0.5;      // of the error along the tip's travel [m]
+constexpr double share_of_variance = 0.5;    // of that error, and of the one of the whole dig
+
+// Streams of a step.
+constexpr std::uint64_t tracking_stream = 1;
+constexpr std::uint64_t scale_stream = 2;
+constexpr std::uint64_t landing_stream = 3;
+constexpr std::uint64_t scan_stream = 4;
+
+double turned(double angle) { return std::remainder(angle, 2.0 * pi); }
+
+/// Errors of the tip's height at the poses of a path: bias, a draw, and one that varies along it.
+std::vector<double> height_errors(const DigPath& path, const HiddenErrors& errors, Random random) {
+  const double sd = errors.height_sd * std::sqrt(share_of_variance);
+  const double of_dig = errors.height_bias + sd * random.normal();
+  double along = sd * random.normal();
+  std::vector<double> all;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const DigPose& pose = path.poses[i];
+    if (i > 0 && pose.phase != DigPhase::lift) {
+      const BucketPose& last = path.poses[i - 1].bucket;
+      const double travel = std::hypot(pose.bucket.x - last.x, pose.bucket.z - last.z);
+      const double kept = std::exp(-travel / tracking_length);
+      along = kept * along + sd * std::sqrt(1.0 - kept * kept) * random.normal();
+    }
+    all.push_back(of_dig + along);
+  }
+  return all;
+}
+
+/// The poses that the machine came to.
+DigPath driven(const DigPath& path, const DigResult& dig) {
+  DigPath part = path;
+  if (!dig.stall) return part;
+  const std::size_t poses = std::max<std::size_t>(2, dig.torques.size() + 1);
+  if (poses < part.poses.size()) part.poses.resize(poses);
+  return part;
+}
+
+/// Takes what a pose is known to be to where it is.
+struct PoseError {
+  BasePose known, real;
+
+  Vector2d moved(const Vector2d& place) const {
+    const double turn = real.heading - known.heading;
+    const Vector2d off = place - Vector2d(known.x, known.y);
+    return {real.x + std::cos(turn) * off.x() - std::sin(turn) * off.y(),
+            real.y + std::sin(turn) * off.x() + std::cos(turn) * off.y()};
+  }
+};
+
+/// Dry mass of the layers of a ground above any level, up to a constant [kg].
+struct Solids {
+  Solids(const Terrain& ground, const SoilKind& soil) : ground_(ground), soil_(soil) {}
+  /// Of the bank that an earlier state had more, with its void ratios.
+  double cut_since(const ArrayXXd& bank, const ArrayXXd& void_ratio) const {
+    const ArrayXXd solids = (bank - ground_.bank.z) / (1.0 + void_ratio);
+    return per_height() * solids.isNaN().select(0.0, solids).sum();
+  }
+  double lying_since(const ArrayXXd& loose) const {
+    return per_height() * (ground_.loose - loose).sum() / (1.0 + soil_.void_ratio_loose);
+  }
+
+ private:
+  double per_height() const {
+    const double cell = ground_.bank.cell_size;
+    return cell * cell * soil_.specific_gravity * water_density;
+  }
+  const Terrain& ground_;
+  const SoilKind& soil_;
+};
+
+/// Time and energy of a dig and all that follows it until the next.
+CycleShare cycle_cost(const Machine& machine, const DigPath& path, const DigResult& dig,
+                      const CycleOptions& options) {
+  PlannedDig planned;
+  planned.payload_mass = dig.payload_mass;
+  planned.payload_volume = dig.payload_volume;
+  planned.energy = dig.energy.total;
+  planned.duration = time_dig_path(machine, driven(path, dig), {}, dig.torques).dig_duration();
+  const auto cycle = cycle_of(machine, path, planned, options);
+  return cycle ? cycle->total : CycleShare{planned.energy, planned.duration};
+}
+
+}  // namespace
+
+DigPath shifted_path(const Machine& machine, DigPath path, double lane,
+                     const std::vector<double>& shift) {
+  require(shift.size() == path.poses.size(), "shift of a path: must be one for each pose");
+  const Machine bent = machine_for_planned_path(machine);
+  for (std::size_t i = 0; i < shift.size(); ++i) {
+    DigPose& pose = path.poses[i];
+    for (int eighths = 8; eighths > 0; --eighths) {
+      const double z = pose.bucket.z + shift[i] * eighths / 8.0;
+      const BucketPose reached = {std::hypot(pose.bucket.x, lane), z, pose.bucket.floor_angle};
+      const auto joints = inverse_kinematics(bent, reached);
+      if (!std::holds_alternative<JointAngles>(joints)) continue;
+      pose.joints = std::get<JointAngles>(joints);
+      pose.bucket.z = z;
+      break;
+    }
+  }
+  return path;
+}
+
+struct TrueSite::State {
+  State(const HiddenSite& of, const Machine& digger, const TruthOptions& how)
+      : site(of), machine(digger), options(how), ground(of.ground) {
+    density = site.mean_density();
+    simulator = options.simulator.make(machine, site.soil, density);
+    seen_height = ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
+                                     std::numeric_limits<double>::quiet_NaN());
+    const HeightMap surface = ground.surface();
+    for_each_cell(seen_height, [&](Cell at) {
+      const double x = surface.x(at.col), y = surface.y(at.row);
+      const auto cell = cell_at(site.first_scan, x, y);
+      if (!cell || std::isnan(site.first_scan.z(cell->row, cell->col))) return;
+      seen_height(at.row, at.col) = surface.z(at.row, at.col);
+    });
+    real = *site.known.job.start;
+    real.z = height_under(real);
+    known = real;
+  }
+
+  /// Of the ground under the tracks.
+  double height_under(const BasePose& base) const {
+    const double half = 0.5 * machine.undercarriage_width(), front = machine.track_front;
+    const HeightMap surface = ground.surface();
+    double sum = 0.0;
+    int count = 0;
+    constexpr int places = 9;
+    for (int i = 0; i < places; ++i) {
+      for (int k = 0; k < places; ++k) {
+        const double along = front * (2.0 * i / (places - 1) - 1.0);
+        const double left = half * (2.0 * k / (places - 1) - 1.0);
+        const double c = std::cos(base.heading), s = std::sin(base.heading);
+        const double z = height_at(surface, base.x + c * along - s * left,
+                                   base.y + s * along + c * left);
+        if (std::isnan(z)) continue;
+        sum += z;
+        ++count;
+      }
+    }
+    require(count > 0, "the machine stands beside the ground of the site");
+    return sum / count;
+  }
+
+  Random random(std::uint64_t stream) const { return Random(options.seed, stream, step); }
+
+  /// Marks all cells of a square as seen.
+  void see(const HeightMap& surface, double x, double y, double half) {
+    const auto first = cell_at(surface, x - half, y - half);
+    const auto last = cell_at(surface, x + half, y + half);
+    if (!first || !last) return;
+    const auto rows = last->row - first->row + 1, cols = last->col - first->col + 1;
+    seen_height.block(first->row, first->col, rows, cols) =
+        surface.z.block(first->row, first->col, rows, cols);
+  }
+
+  TrueStep dig(const JobStep& job);
+  void dump(const JobStep& job, const DigResult& dig, const Vector2d& at);
+  TrueStep move(const JobStep& job);
+  Scan scan();
+  void take_scan(TrueStep& done) {
+    done.report.scan = scan();
+    done.time += options.scan_time;
+  }
+
+  HiddenSite site;
+  Machine machine;
+  TruthOptions options;
+  Terrain ground;
+  double density = 0.0;
+  std::unique_ptr<const SoilSimulator> simulator;
+  BasePose known, real;
+  double time = first_time;
+  std::uint64_t step = 0;   ///< steps done
+  std::uint64_t scans = 0;  ///< made
+  SolidsLedger solids;
+  ArrayXXd seen_height;     ///< of the true surface when a cell was last seen; NaN: never [m]
+};
+
+TrueStep TrueSite::State::dig(const JobStep& job) {
+  require(job.path.poses.size() >= 2, "its path has fewer than two poses");
+  Random tracking = random(tracking_stream);
+  const double aside = site.errors.side_sd * tracking.normal();
+  std::vector<double> shift = height_errors(job.path, site.errors, tracking);
+  for (double& z : shift) z += job.base.z - real.z;
+  const DigPath path = shifted_path(machine, job.path, job.lane, shift);
+  const PoseError error = {known, real};
+  DigLine line = dig_line(job.base, job.swung, job.lane);
+  line.heading += real.heading - known.heading;
+  line.origin = error.moved(line.origin) +
+                aside * Vector2d(-std::sin(line.heading), std::cos(line.heading));
+  line.z = real.z;
+  const Terrain before = ground;
+  const DigResult dug = dig_along(*simulator, machine, ground, line,
+                                  soil_voids(site.soil, density), path);
+  apply(dug.patch, ground);
+  const Vector2d dump_at = error.moved(job.dump.head<2>());
+  dump(job, dug, dump_at);
+  const Solids after(ground, site.soil);
+  solids.cut += after.cut_since(before.bank.z, before.bank_void_ratio);
+  solids.lying += after.lying_since(before.loose);
+  if (site.density.gradient != 0.0) set_void_ratios(site.density, site.soil, ground);
+
+  const double from = line.heading + std::atan2(job.lane, path.poses.back().bucket.x);
+  const double to = std::atan2(dump_at.y() - real.y, dump_at.x() - real.x);
+  CycleOptions options_of_cycle;
+  options_of_cycle.swing = turned(to - from);
+  options_of_cycle.dump_height = std::max(0.0, job.dump.z() - real.z);
+  const CycleShare cost = cycle_cost(machine, path, dug, options_of_cycle);
+  TrueStep done;
+  done.time = cost.time;
+  done.energy = cost.energy;
+  done.payload_mass = dug.payload_mass;
+  done.stall = dug.stall;
+  done.report.stalled = dug.stall.has_value();
+  done.report.joint_work = cost.energy;
+  done.report.payload_mass = dug.payload_mass * (1.0 + site.errors.payload_scale) *
+                             (1.0 + site.errors.payload_noise * random(scale_stream).normal());
+  if (options.scans_each_dig) take_scan(done);
+  return done;
+}
+
+void TrueSite::State::dump(const JobStep& job, const DigResult& dig, const Vector2d& at) {
+  if (!(dig.payload_volume > 0.0)) return;
+  const auto& truck = site.known.job.truck;
+  if (job.truck && truck && is_in(truck->bed, at.x(), at.y())) {
+    solids.hauled += dig.payload_volume * site.soil.specific_gravity * water_density /
+                     (1.0 + site.soil.void_ratio_loose);
+    return;
+  }
+  heap_soil(ground, site.soil, density, at, dig.payload_volume);
+}
+
+TrueStep TrueSite::State::move(const JobStep& job) {
+  const HiddenErrors& errors = site.errors;
+  Random landing = random(landing_stream);
+  const BasePose from = real;
+  real = job.base;
+  real.x += errors.landing_sd * landing.normal();
+  real.y += errors.landing_sd * landing.normal();
+  real.heading += errors.landing_turn_sd * landing.normal();
+  real.z = height_under(real);
+  known = real;
+  known.x += errors.pose_sd * landing.normal();
+  known.y += errors.pose_sd * landing.normal();
+  known.heading += errors.pose_turn_sd * landing.normal();
+  const double way = std::hypot(real.x - from.x, real.y - from.y);
+  TrueStep done;
+  done.time = options.move.time + options.move.time_per_metre * way;
+  done.energy = options.move.energy + options.move.energy_per_metre * way;
+  done.report.base = known;
+  return done;
+}
+
+Scan TrueSite::State::scan() {
+  const std::uint64_t seed = Random(options.seed, scan_stream, scans++).bits();
+  const HeightMap surface = ground.surface();
+  Scan scan = scan_site(with_obstacles(surface, site.known.job.obstacles), site.known.sensor, real,
+                        seed);
+  scan.name = "scan " + std::to_string(scans);
+  const HeightMap& cells = site.first_scan;
+  for (const auto& cloud : scan.clouds) {
+    for (const Eigen::Vector3d& point : cloud->points) {
+      const auto cell = cell_at(cells, point.x(), point.y());
+      if (cell) see(surface, cells.x(cell->col), cells.y(cell->row), 0.499 * cells.cell_size);
+    }
+  }
+  return scan;
+}
+
+TrueSite::TrueSite(const HiddenSite& site, const Machine& machine, const TruthOptions& options)
+    : state_(std::make_unique<State>(site, machine, options)) {}
+TrueSite::~TrueSite() = default;
+TrueSite::TrueSite(TrueSite&&) noexcept = default;
+TrueSite& TrueSite::operator=(TrueSite&&) noexcept = default;
+
+TrueStep TrueSite::execute(const JobStep& step) {
+  ++state_->step;
+  TrueStep done;
+  try {
+    switch (step.what) {
+      case JobAction::dig:
+      case JobAction::finish: done = state_->dig(step); break;
+      case JobAction::move: done = state_->move(step); break;
+      case JobAction::scan: state_->take_scan(done); break;
+      case JobAction::wait: done.time = state_->options.wait_time; break;
+      case JobAction::stop: break;
+    }
+  } catch (const Error& error) {
+    throw Error(error.kind(), "step " + std::to_string(step.id) + " (" + name(step.what) +
+                                  "): " + error.what());
+  }
+  state_->time += done.time;
+  done.report.time = state_->time;
+  return done;
+}
+
+Scan TrueSite::scan() { return state_->scan(); }
+const Terrain& TrueSite::ground() const { return state_->ground; }
+const BasePose& TrueSite::known_base() const { return state_->known; }
+const BasePose& TrueSite::true_base() const { return state_->real; }
+double TrueSite::time() const { return state_->time; }
+const SolidsLedger& TrueSite::solids() const { return state_->solids; }
+
+double TrueSite::seen_share(const HeightMap& area) const {
+  const double tolerance = state_->site.known.job.tolerance;
+  const HeightMap surface = state_->ground.surface();
+  const auto all = (!area.z.isNaN()).count();
+  const auto seen =
+      (!area.z.isNaN() && (surface.z - state_->seen_height).abs() <= tolerance).count();
+  return all > 0 ? static_cast<double>(seen) / static_cast<double>(all) : 0.0;
+}
+
+}  // namespace excavplan
