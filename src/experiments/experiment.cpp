@@ -65,7 +65,7 @@ class Experiment {
     if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
     auto& path = std::get<DigPath>(laid);
     const auto outcome =
-        dig_along(machine_, *simulator_, ground_, path, options_.plan.search.objective);
+        dig_of_path(machine_, *simulator_, ground_, path, options_.plan.search.objective);
     if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
     return Dug{std::get<PlannedDig>(outcome), std::move(path)};
   }

@@ -47,7 +47,7 @@ class Reference {
   std::variant<PlannedDig, DigFailure> dig_from(const DigParameters& parameters, double x) const {
     const auto path = layout_.path_from(parameters, x);
     if (const auto* stop = std::get_if<Infeasible>(&path)) return DigFailure(*stop);
-    return dig_along(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
+    return dig_of_path(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
                      model_.search.objective);
   }
 

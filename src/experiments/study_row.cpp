@@ -53,7 +53,7 @@ std::optional<double> DigRow::fullest_start(const Terrain& ground) const {
     const auto laid = layout.path_from(options_.fixed_path, x);
     const auto* path = std::get_if<DigPath>(&laid);
     if (!path) continue;
-    const auto outcome = dig_along(machine_, *simulator_, ground, *path);
+    const auto outcome = dig_of_path(machine_, *simulator_, ground, *path);
     const auto* dig = std::get_if<PlannedDig>(&outcome);
     if (!dig || dig->payload_mass <= most) continue;
     most = dig->payload_mass;

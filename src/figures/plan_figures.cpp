@@ -100,7 +100,7 @@ std::vector<double> worths(const DrawnPlan& drawn, const std::vector<Section>& s
     const auto path = layout.path_from(dig, drawn.plan.dig->start_x);
     if (!std::holds_alternative<DigPath>(path)) return;
     const auto dug =
-        dig_along(machine, *simulator, site.ground, std::get<DigPath>(path), objective);
+        dig_of_path(machine, *simulator, site.ground, std::get<DigPath>(path), objective);
     if (const auto* done = std::get_if<PlannedDig>(&dug)) {
       found[i] = objective.worth(*done) * info_of(objective.goal).per_si;
     }

@@ -54,7 +54,7 @@ double DigAttempts::measure(const PlannedDig& dig) {
   }
   double worth = 0.0;
   if (const auto* drivable = std::get_if<DigPath>(&path)) {
-    const auto outcome = dig_along(machine_, *simulator_, ground_, *drivable, objective_);
+    const auto outcome = dig_of_path(machine_, *simulator_, ground_, *drivable, objective_);
     if (const auto* dug = std::get_if<PlannedDig>(&outcome)) worth = objective_.worth(*dug);
   }
   tell(1, worth);

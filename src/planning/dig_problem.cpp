@@ -177,7 +177,7 @@ DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& 
                        const Terrain& terrain, const DigPath& path, const CycleOptions& cycle) {
   DigsInEach digs;
   for (const PossibleSoil& soil : soils) {
-    digs.push_back(dig_along(machine, *soil.simulator, terrain, path, cycle));
+    digs.push_back(dig_of_path(machine, *soil.simulator, terrain, path, cycle));
   }
   return digs;
 }

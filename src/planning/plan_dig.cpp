@@ -180,7 +180,7 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
                            const KnownOnSlope& source) {
     if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
     const auto& path = std::get<DigPath>(laid);
-    const auto outcome = dig_along(machine, *simulator, task.ground, path, task.objective());
+    const auto outcome = dig_of_path(machine, *simulator, task.ground, path, task.objective());
     ++plan.evaluations;
     if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
     const auto& dig = std::get<PlannedDig>(outcome);

@@ -15,7 +15,7 @@ std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
                                                   const StartRule& start) {
   const auto path = path_by(DigLayout(machine, terrain), parameters, start);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
-  return dig_along(machine, simulator, terrain, std::get<DigPath>(path));
+  return dig_of_path(machine, simulator, terrain, std::get<DigPath>(path));
 }
 
 }  // namespace excavplan

@@ -25,10 +25,10 @@ PlannedDig figures_of(const DigResult& result, const Machine& machine, const Dig
 
 }  // namespace
 
-std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
-                                               const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path,
-                                               const CycleOptions& cycle) {
+std::variant<PlannedDig, DigFailure> dig_of_path(const Machine& machine,
+                                                 const SoilSimulator& simulator,
+                                                 const Terrain& terrain, const DigPath& path,
+                                                 const CycleOptions& cycle) {
   DigOptions options;  // what slides after the bucket is out changes neither load nor energy
   options.settle = false;
   options.worth_alone = true;

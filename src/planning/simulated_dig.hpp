@@ -9,10 +9,10 @@
 namespace excavplan {
 
 /// Digs a path that was laid out.
-std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
-                                               const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path,
-                                               const CycleOptions& cycle = {});
+std::variant<PlannedDig, DigFailure> dig_of_path(const Machine& machine,
+                                                 const SoilSimulator& simulator,
+                                                 const Terrain& terrain, const DigPath& path,
+                                                 const CycleOptions& cycle = {});
 /// A dig with all that the simulator says of it.
 struct SimulatedDig {
   PlannedDig dig;

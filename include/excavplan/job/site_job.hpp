@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_settings.hpp>
+#include <excavplan/job/job_step.hpp>
+
+/// @file
+/// A job from its design to finished ground, step by step (docs/guide/job.md).
+
+namespace excavplan {
+
+/// How far a job has come.
+struct JobProgress {
+  double design_volume = 0.0;  ///< to be taken out when the job began [m^3]
+  double left_volume = 0.0;    ///< still above the design [m^3]
+  double rms = 0.0;            ///< of the deviation where it counts [m]
+  double p95 = 0.0;            ///< of its absolute value [m]
+  double beyond_twice = 0.0;   ///< share of what counts beyond twice the tolerance [-]
+  double seen = 0.0;           ///< share of the design that was seen [-]
+  bool is_finished = false;    ///< within the tolerance (Deviation), 99 % of it seen
+  int digs = 0;                ///< for volume
+  int finishing_passes = 0;
+  int moves = 0;
+  int scans = 0;
+  int stalls = 0;
+  double payload_mass = 0.0;  ///< lifted in all [kg]
+};
+
+/// Decides the steps of a job. All that it knows is in a folder, written at once after every step:
+/// it goes on where it was after the process was killed.
+///
+/// The machine works backwards from the far end of the design. From each place it digs layers down
+/// to the tolerance over the design, scans, and passes along the floor until the ground has the
+/// shape of the design; then it moves on. Worth of a dig: volume of the design gained, less what is
+/// dug too deep or spilled, per energy and priced time of its cycle.
+class SiteJob : public JobPlanner {
+ public:
+  /// Begins a job in a folder that holds none.
+  /// @param first  scan of the ground before the job, in the site's frame
+  /// @param time  of it, since 1970-01-01 UTC [s]
+  /// @throws Error (bad_input) as require_job_settings(), or if the folder holds a job; as
+  /// Site::update()
+  static SiteJob begin(const std::string& folder, JobSettings settings, const Scan& first,
+                       double time);
+  /// Goes on with the job of a folder.
+  /// @throws Error (bad_file) if it holds none, or a file of it is damaged
+  static SiteJob resume(const std::string& folder, JobSettings settings);
+  ~SiteJob() override;
+  SiteJob(SiteJob&&) noexcept;
+  SiteJob& operator=(SiteJob&&) noexcept;
+
+  JobStep next() override;
+  void done(long long step, const StepReport& report) override;
+
+  JobProgress progress() const;
+  const Terrain& ground() const;  ///< as expected now: as scanned, and what was dug since
+
+ private:
+  struct State;
+  explicit SiteJob(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace excavplan

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_settings.hpp>
+
+#include "job/job_map.hpp"
+
+/// @file
+/// Where the soil of a dig goes. Private to the project.
+
+namespace excavplan {
+
+/// A place to open the bucket over.
+struct DumpPlace {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the bucket pin, in the site's frame [m]
+  double swing = 0.0;   ///< to it from the machine's heading, to the left [rad]
+  double height = 0.0;  ///< of the pin over the ground under the machine [m]
+  bool in_truck = false;
+};
+
+/// The place of the dump areas, or the truck, with the least swing from where the machine stands,
+/// where a bucket of soil stays within the area.
+/// @return nothing if none is within reach
+std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
+                                    const Terrain& ground, const BasePose& base);
+
+}  // namespace excavplan

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_learning.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excavplan {
+namespace {
+
+// Numbers of our own choice.
+constexpr double normal_95 = 1.959963984540054;
+constexpr double memory = 0.1;        // of the scatter, of each new reading
+constexpr double drift = 0.02;        // of the two ratios from dig to dig, as the soil changes
+constexpr double least_energy = 0.1;  // of the dig in that of its cycle, to tell its own
+
+void learn_ratio(LearntNumber& ratio, double& scatter, double reading) {
+  ratio.variance += drift * drift;
+  const double surprise = reading - ratio.mean;
+  ratio.learn(reading, scatter);
+  const double left = std::max(0.0, surprise * surprise - ratio.variance);
+  scatter += memory * (left - scatter);
+}
+
+std::array<double, 2> interval(double mean, double sd_of_logarithm) {
+  const double factor = std::exp(normal_95 * sd_of_logarithm);
+  return {mean / factor, mean * factor};
+}
+
+}  // namespace
+
+void LearntNumber::learn(double reading, double reading_variance) {
+  const double gain = variance / (variance + reading_variance);
+  mean += gain * (reading - mean);
+  variance *= 1.0 - gain;
+}
+
+double LearntNumber::sd() const { return std::sqrt(variance); }
+
+ForetoldStep JobLearning::foretell(const PlannedDig& dig) const {
+  ForetoldStep foretold;
+  foretold.payload_mass = dig.payload_mass * std::exp(payload.mean);
+  const double in_soil = dig.energy * std::exp(energy.mean);
+  foretold.energy = dig.cycle_energy - dig.energy + in_soil;
+  foretold.time = dig.cycle_time;
+  foretold.payload_interval =
+      interval(foretold.payload_mass, std::sqrt(payload.variance + payload_scatter));
+  const double sd = std::sqrt(energy.variance + energy_scatter);
+  const double share = foretold.energy > 0.0 ? in_soil / foretold.energy : 0.0;
+  foretold.energy_interval = interval(foretold.energy, share * sd);
+  return foretold;
+}
+
+void JobLearning::learn(const PlannedDig& dig, const StepReport& report) {
+  if (report.stalled) return;
+  if (report.payload_mass && *report.payload_mass > 0.0 && dig.payload_mass > 0.0) {
+    learn_ratio(payload, payload_scatter, std::log(*report.payload_mass / dig.payload_mass));
+  }
+  const double rest = dig.cycle_energy - dig.energy;
+  if (report.joint_work && dig.energy > least_energy * dig.cycle_energy &&
+      *report.joint_work > rest) {
+    learn_ratio(energy, energy_scatter, std::log((*report.joint_work - rest) / dig.energy));
+  }
+  ++readings;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <excavplan/job/job_step.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+
+/// @file
+/// What a job learns of soil and machine from what was foretold and what came. Private to the
+/// project.
+
+namespace excavplan {
+
+/// A number that is learnt from readings with errors, by the scalar Kalman filter.
+struct LearntNumber {
+  double mean = 0.0;
+  double variance = 0.0;
+
+  void learn(double reading, double reading_variance);
+  double sd() const;
+};
+
+/// Learnt from step to step; deviations before any are ours.
+struct JobLearning {
+  LearntNumber height_bias = {0.0, 0.015 * 0.015};  ///< of the edge over where it should be [m]
+  LearntNumber payload = {0.0, 0.06 * 0.06};        ///< ln(payload by the scale / simulated)
+  LearntNumber energy = {0.0, 0.25 * 0.25};         ///< ln(energy of the dig / simulated)
+  double payload_scatter = 0.05 * 0.05;             ///< variance from dig to dig of that logarithm
+  double energy_scatter = 0.08 * 0.08;              ///< likewise
+  int readings = 0;
+
+  ForetoldStep foretell(const PlannedDig& dig) const;
+  void learn(const PlannedDig& dig, const StepReport& report);
+};
+
+}  // namespace excavplan

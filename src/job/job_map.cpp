@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include <excavplan/design/cut_and_fill.hpp>
+
+#include "base/check.hpp"
+#include "ground/window.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::ArrayXXd;
+using Eigen::Vector2d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double least_share = 0.5;  // of a cell that is one of the design
+const double steepest = CutOptions{}.steepest;
+
+bool holds(const SitePolygon& polygon, const Vector2d& place) {
+  bool inside = false;
+  for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
+    const Vector2d& a = polygon[i];
+    const Vector2d& b = polygon[last];
+    if ((a.y() > place.y()) == (b.y() > place.y())) continue;
+    if (place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+/// The cells of a polygon.
+template <typename Visit>
+void for_each_inside(const SitePolygon& polygon, const HeightMap& grid, Visit visit) {
+  for_each_cell(grid.z, [&](Cell at) {
+    if (holds(polygon, {grid.x(at.col), grid.y(at.row)})) visit(at);
+  });
+}
+
+/// The design less its rim and its steep faces.
+Mask counting(const HeightMap& target, double edge_margin) {
+  const double cell = target.cell_size;
+  ArrayXXd left_out = target.z.isNaN().cast<double>();
+  for_each_cell(target.z, [&](Cell at) {
+    for_each_neighbour(target.z, at, [&](Cell next) {
+      const double rise = std::abs(target.z(at.row, at.col) - target.z(next.row, next.col));
+      if (rise > std::tan(steepest) * cell) left_out(at.row, at.col) = 1.0;
+    });
+  });
+  const auto margin = static_cast<Eigen::Index>(std::ceil(edge_margin / cell - 1e-9));
+  return highest_within(left_out, margin) < 0.5;
+}
+
+}  // namespace
+
+void require_job_settings(const JobSettings& settings) {
+  require_job(settings.design);
+  require_machine(settings.site.machine);
+  require_soil(settings.site.soil);
+  require(settings.design.start.has_value(), "job: the machine's start is not told");
+  require(settings.site.machine.swing && settings.site.machine.engine,
+          "job: machine " + settings.site.machine.name + " states no swing or no engine");
+  require_in("job: density [%]", settings.density_percent, 0.0, 100.0);
+  require_in("job: price of a second [W]", settings.time_price, 0.0, 1e6);
+}
+
+JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
+  const JobDesign& design = settings.design;
+  JobMap map;
+  map.target = ground;
+  const DesignCover cover = cover_of(settings.surface, ground);
+  map.target.z = (cover.share >= least_share).select(cover.height, std::nan("")).eval();
+  map.counts = counting(map.target, design.edge_margin);
+  map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
+  for (const DumpArea& area : design.dump_areas) {
+    for_each_inside(area.polygon, ground, [&](Cell at) { map.dump(at.row, at.col) = true; });
+  }
+  map.forbidden = ArrayXXd::Constant(ground.z.rows(), ground.z.cols(), -infinity);
+  for (const KeepOut& area : design.keep_out) {
+    for_each_inside(area.polygon, ground, [&](Cell at) {
+      double& level = map.forbidden(at.row, at.col);
+      const double highest = ground.z(at.row, at.col) - area.depth.value_or(-infinity);
+      level = std::max(level, std::isnan(highest) ? infinity : highest);
+    });
+  }
+  for (const JobObstacle& obstacle : design.obstacles) {
+    for_each_inside(obstacle.polygon, ground,
+                    [&](Cell at) { map.forbidden(at.row, at.col) = infinity; });
+  }
+  return map;
+}
+
+Vector2d JobFrame::place(double along, double beside) const {
+  const double c = std::cos(heading);
+  const double s = std::sin(heading);
+  return {origin.x() + c * along - s * beside, origin.y() + s * along + c * beside};
+}
+
+Vector2d JobFrame::of(const Vector2d& place) const {
+  const Vector2d offset = place - origin;
+  const double c = std::cos(heading);
+  const double s = std::sin(heading);
+  return {c * offset.x() + s * offset.y(), c * offset.y() - s * offset.x()};
+}
+
+JobFrame frame_of(const JobSettings& settings, const JobMap& map) {
+  const BasePose& start = *settings.design.start;
+  JobFrame frame;
+  frame.origin = {start.x, start.y};
+  frame.heading = start.heading;
+  Eigen::AlignedBox2d box;
+  for_each_cell(map.target.z, [&](Cell at) {
+    if (std::isnan(map.target.z(at.row, at.col))) return;
+    box.extend(frame.of({map.target.x(at.col), map.target.y(at.row)}));
+  });
+  if (box.isEmpty()) refuse("job: the design covers no cell of the ground");
+  const double half = 0.5 * map.target.cell_size;  // of cells at the rim, half of them are within
+  frame.near = box.min().x() - half;
+  frame.far = box.max().x() + half;
+  frame.right = box.min().y() - half;
+  frame.left = box.max().y() + half;
+  return frame;
+}
+
+}  // namespace excavplan

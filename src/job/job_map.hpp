@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <excavplan/job/job_settings.hpp>
+
+#include "ground/grid_cells.hpp"
+
+/// @file
+/// A job on the cells of its ground, and along its longest side. Private to the project.
+
+namespace excavplan {
+
+/// What is asked for in each cell.
+struct JobMap {
+  HeightMap target;           ///< design height; NaN outside of its footprint [m]
+  Mask counts;                ///< whether the cell counts for the deviation (CutOptions)
+  Mask dump;                  ///< whether soil may be laid there
+  Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none
+};
+
+/// @param ground  before the job
+JobMap map_of(const JobSettings& settings, const HeightMap& ground);
+
+/// Where the design lies along the machine's line of work.
+struct JobFrame {
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of the line [m]
+  double heading = 0.0;  ///< of the line, away from where the job ends [rad]
+  double near = 0.0;     ///< of the design along the line [m]
+  double far = 0.0;      ///< likewise [m]
+  double right = 0.0;    ///< of the design beside the line, mostly below 0 [m]
+  double left = 0.0;     ///< likewise [m]
+
+  Eigen::Vector2d place(double along, double beside) const;
+  Eigen::Vector2d of(const Eigen::Vector2d& place) const;  ///< along and beside
+};
+
+/// Along the heading in which the machine starts: it works backwards.
+JobFrame frame_of(const JobSettings& settings, const JobMap& map);
+
+}  // namespace excavplan

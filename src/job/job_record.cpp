@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_record.hpp"
+
+#include <array>
+#include <filesystem>
+#include <utility>
+
+#include "base/files.hpp"
+#include "base/json.hpp"
+
+namespace excavplan {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format = "excavplan job";
+constexpr int version = 1;
+constexpr int numbers_of_pose = 7;
+
+template <typename Value, std::size_t size>
+Value of_word(JsonObject& object, const char* key, const std::array<Value, size>& values) {
+  const std::string word = object.text(key);
+  for (const Value value : values) {
+    if (word == name(value)) return value;
+  }
+  object.fail(key, "is not a known word");
+}
+
+constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,
+                               DigPhase::scoop,    DigPhase::lift,      DigPhase::swing,
+                               DigPhase::dump,     DigPhase::back};
+constexpr std::array actions = {JobAction::dig,  JobAction::finish, JobAction::move,
+                                JobAction::scan, JobAction::wait,   JobAction::stop};
+
+Json poses_json(const std::vector<DigPose>& poses) {
+  Json list = Json::array();
+  for (const DigPose& pose : poses) {
+    const BucketPose& bucket = pose.bucket;
+    list.push_back({{"phase", name(pose.phase)},
+                    {"pose",
+                     {bucket.x, bucket.z, bucket.floor_angle, pose.joints[0], pose.joints[1],
+                      pose.joints[2]}}});
+  }
+  return list;
+}
+
+std::vector<DigPose> read_poses(std::vector<JsonObject> list) {
+  std::vector<DigPose> poses;
+  poses.reserve(list.size());
+  for (JsonObject& each : list) {
+    DigPose pose;
+    pose.phase = of_word(each, "phase", phases);
+    const std::vector<double> numbers = each.numbers("pose", numbers_of_pose - 1);
+    pose.bucket = {numbers[0], numbers[1], numbers[2]};
+    pose.joints = {numbers[3], numbers[4], numbers[5]};
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+Json path_json(const DigPath& path) {
+  return {{"angle_rad", path.parameters.penetration_angle},
+          {"penetration_m", path.parameters.penetration_length},
+          {"drag_m", path.parameters.drag_length},
+          {"start_x_m", path.start_x},
+          {"ground_z_m", path.ground_z},
+          {"grade_rad", path.drag_grade},
+          {"floor", path.meets_floor},
+          {"heel_clearance_rad", path.heel_clearance},
+          {"overcut_m", path.overcut},
+          {"poses", poses_json(path.poses)}};
+}
+
+DigPath read_path(JsonObject object) {
+  DigPath path;
+  path.parameters = {object.number("angle_rad"), object.number("penetration_m"),
+                     object.number("drag_m")};
+  path.start_x = object.number("start_x_m");
+  path.ground_z = object.number("ground_z_m");
+  path.drag_grade = object.number("grade_rad");
+  path.meets_floor = object.flag("floor");
+  path.heel_clearance = object.number("heel_clearance_rad");
+  path.overcut = object.number("overcut_m");
+  path.poses = read_poses(object.objects("poses"));
+  object.done();
+  return path;
+}
+
+Json base_json(const BasePose& base) { return {base.x, base.y, base.z, base.heading}; }
+
+BasePose read_base(JsonObject& object) {
+  const std::vector<double> numbers = object.numbers("base", 4);
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+Json step_json(const JobStep& step) {
+  Json json = {{"id", step.id},
+               {"what", name(step.what)},
+               {"base", base_json(step.base)},
+               {"swung_rad", step.swung},
+               {"lane_m", step.lane},
+               {"dump_m", {step.dump.x(), step.dump.y(), step.dump.z()}},
+               {"truck", step.truck.value_or(0)},
+               {"payload_kg", step.predicted.payload_mass},
+               {"payload_interval_kg", step.predicted.payload_interval},
+               {"energy_j", step.predicted.energy},
+               {"energy_interval_j", step.predicted.energy_interval},
+               {"time_s", step.predicted.time},
+               {"reason", step.reason}};
+  const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;
+  if (digs) json["path"] = path_json(step.path);
+  return json;
+}
+
+JobStep read_step(JsonObject object) {
+  JobStep step;
+  step.id = static_cast<long long>(object.number("id", 0, 1e12));
+  step.what = of_word(object, "what", actions);
+  step.base = read_base(object);
+  step.swung = object.number("swung_rad");
+  step.lane = object.number("lane_m");
+  const std::vector<double> dump = object.numbers("dump_m", 3);
+  step.dump = {dump[0], dump[1], dump[2]};
+  const int truck = static_cast<int>(object.number("truck", 0, 1e9));
+  if (truck > 0) step.truck = truck;
+  ForetoldStep& foretold = step.predicted;
+  foretold.payload_mass = object.number("payload_kg");
+  foretold.energy = object.number("energy_j");
+  foretold.time = object.number("time_s");
+  const std::vector<double> payloads = object.numbers("payload_interval_kg", 2);
+  foretold.payload_interval = {payloads[0], payloads[1]};
+  const std::vector<double> energies = object.numbers("energy_interval_j", 2);
+  foretold.energy_interval = {energies[0], energies[1]};
+  step.reason = object.text("reason");
+  if (object.has("path")) step.path = read_path(object.object("path"));
+  object.done();
+  return step;
+}
+
+Json planned_json(const PlannedDig& dig) {
+  return {dig.payload_mass, dig.payload_volume, dig.energy,    dig.duration,
+          dig.fill,         dig.cycle_energy,   dig.cycle_time};
+}
+
+PlannedDig read_planned(const std::vector<double>& numbers) {
+  PlannedDig dig;
+  dig.payload_mass = numbers[0];
+  dig.payload_volume = numbers[1];
+  dig.energy = numbers[2];
+  dig.duration = numbers[3];
+  dig.fill = numbers[4];
+  dig.cycle_energy = numbers[5];
+  dig.cycle_time = numbers[6];
+  return dig;
+}
+
+Json learning_json(const JobLearning& learning) {
+  return {learning.height_bias.mean, learning.height_bias.variance, learning.payload.mean,
+          learning.payload.variance, learning.energy.mean,          learning.energy.variance,
+          learning.payload_scatter,  learning.energy_scatter,       learning.readings};
+}
+
+JobLearning read_learning(const std::vector<double>& numbers) {
+  JobLearning learning;
+  learning.height_bias = {numbers[0], numbers[1]};
+  learning.payload = {numbers[2], numbers[3]};
+  learning.energy = {numbers[4], numbers[5]};
+  learning.payload_scatter = numbers[6];
+  learning.energy_scatter = numbers[7];
+  learning.readings = static_cast<int>(numbers[8]);
+  return learning;
+}
+
+/// Whole numbers of a record, with their keys.
+template <typename Record, typename Visit>
+void for_each_count(Record& record, Visit visit) {
+  visit("passes_here", record.passes_here);
+  visit("fruitless", record.fruitless);
+  visit("trucks", record.trucks);
+  visit("digs", record.progress.digs);
+  visit("finishing_passes", record.progress.finishing_passes);
+  visit("moves", record.progress.moves);
+  visit("scans", record.progress.scans);
+  visit("stalls", record.progress.stalls);
+}
+
+/// Other numbers likewise.
+template <typename Record, typename Visit>
+void for_each_number(Record& record, Visit visit) {
+  visit("deepest_cut_m", record.deepest_cut);
+  visit("strength_factor", record.strength_factor);
+  visit("truck_load_kg", record.truck_load);
+  visit("first_volume_m3", record.first_volume);
+  visit("payload_mass_kg", record.progress.payload_mass);
+}
+
+std::string path_of(const std::string& folder) { return folder + "/" + job_file; }
+
+}  // namespace
+
+void save_record(const std::string& folder, const JobRecord& record) {
+  Json json = {{"format", format},
+               {"version", version},
+               {"station", record.station},
+               {"base", base_json(record.base)},
+               {"last_step", record.last_step},
+               {"site_updates", record.site_updates}};
+  for_each_count(record, [&](const char* key, int value) { json[key] = value; });
+  for_each_number(record, [&](const char* key, double value) { json[key] = value; });
+  json["learning"] = learning_json(record.learning);
+  if (record.present) json["present"] = step_json(*record.present);
+  if (record.planned) json["planned"] = planned_json(*record.planned);
+  json["unseen"] = Json::array();
+  for (const UnseenDig& dig : record.unseen) {
+    json["unseen"].push_back({{"step", step_json(dig.step)}, {"stalled", dig.stalled}});
+  }
+  write_own_file(path_of(folder), sealed_text(json));
+}
+
+JobRecord load_record(const std::string& folder) {
+  const std::string path = path_of(folder);
+  JsonObject object = JsonObject::open_sealed(path, read_own_file(path), format, version);
+  JobRecord record;
+  record.station = static_cast<std::size_t>(object.number("station", 0, 1e6));
+  record.base = read_base(object);
+  record.last_step = static_cast<long long>(object.number("last_step", 0, 1e12));
+  record.site_updates = static_cast<long long>(object.number("site_updates", 0, 1e12));
+  for_each_count(record, [&](const char* key, int& value) {
+    value = static_cast<int>(object.number(key, 0, 1e9));
+  });
+  for_each_number(record,
+                  [&](const char* key, double& value) { value = object.number(key, 0, 1e12); });
+  record.learning = read_learning(object.numbers("learning", 9));
+  if (object.has("present")) record.present = read_step(object.object("present"));
+  if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));
+  for (JsonObject& each : object.objects("unseen")) {
+    record.unseen.push_back({read_step(each.object("step")), each.flag("stalled")});
+    each.done();
+  }
+  object.done();
+  return record;
+}
+
+bool holds_record(const std::string& folder) { return std::filesystem::exists(path_of(folder)); }
+
+}  // namespace excavplan

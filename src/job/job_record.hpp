@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/job/job_step.hpp>
+#include <excavplan/job/site_job.hpp>
+
+#include "job/job_ground.hpp"
+#include "job/job_learning.hpp"
+
+/// @file
+/// What a job remembers beside its ground, and its file. Private to the project.
+
+namespace excavplan {
+
+inline constexpr const char* job_file = "job.json";
+
+struct JobRecord {
+  std::size_t station = 0;            ///< where the machine works now
+  BasePose base;                      ///< where it stands
+  long long last_step = 0;            ///< number of the step that was made last
+  std::optional<JobStep> present;     ///< that is not done yet
+  std::optional<PlannedDig> planned;  ///< of it, if it is a dig
+  std::vector<UnseenDig> unseen;      ///< digs since the last scan
+  long long site_updates = 0;         ///< scans that the site had taken in
+  double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall
+  double strength_factor = 1.0;       ///< on the soil's strength; more after a stall
+  int passes_here = 0;                ///< along the floor from this station
+  int fruitless = 0;                  ///< scans in succession after which nothing was to be done
+  double truck_load = 0.0;            ///< in the present truck [kg]
+  int trucks = 1;                     ///< so far
+  double first_volume = 0.0;          ///< of the design when the job began [m^3]
+  JobLearning learning;
+  JobProgress progress;  ///< counts alone
+};
+
+/// @throws Error (bad_file) if it cannot be written
+void save_record(const std::string& folder, const JobRecord& record);
+/// @throws Error (bad_file) naming file, key, value and rule
+JobRecord load_record(const std::string& folder);
+bool holds_record(const std::string& folder);
+
+}  // namespace excavplan

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_stations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excavplan {
+namespace {
+
+// Numbers of our own choice.
+constexpr double nearest_work = 1.3;  // before the tracks, so that the bucket has room to curl [m]
+constexpr double farthest_work = 0.82;  // of the reach of the front from its pin
+constexpr double overlap = 0.4;         // of what is dug from two places in succession [m]
+constexpr double lane_overlap = 0.1;    // of two lanes [m]
+constexpr double widest_lane =
+    0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
+
+std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
+  const double half = 0.5 * bucket_width;
+  const double right = frame.right + half;
+  const double left = frame.left - half;
+  if (left <= right) return {0.5 * (frame.left + frame.right)};
+  const int more = static_cast<int>(std::ceil((left - right) / (bucket_width - lane_overlap)));
+  std::vector<double> lanes;
+  for (int i = 0; i <= more; ++i) lanes.push_back(right + (left - right) * i / more);
+  return lanes;
+}
+
+/// Lanes that are dug from one place.
+std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
+  std::vector<std::vector<double>> groups;
+  for (const double lane : lanes) {
+    if (groups.empty() || lane - groups.back().front() > 2.0 * widest_lane) groups.emplace_back();
+    groups.back().push_back(lane);
+  }
+  return groups;
+}
+
+double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
+double farthest_of(const Machine& machine) {
+  return machine.boom_pin.x() + farthest_work * machine.full_length();
+}
+
+}  // namespace
+
+WorkRange work_range(const JobFrame& frame, const Machine& machine, double along) {
+  return {std::max(nearest_of(machine), frame.near - along),
+          std::min(farthest_of(machine), frame.far - along)};
+}
+
+std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
+  const Machine& machine = settings.site.machine;
+  const double start = 0.0;  // the machine's own place is the origin of the frame
+  const double first = std::max(frame.far - farthest_of(machine),
+                                std::min(start, frame.far - nearest_of(machine) - 1.0));
+  const double last = std::min(first, frame.near - nearest_of(machine));
+  const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
+  const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
+  const auto groups = groups_of(lanes_of(frame, machine.bucket.width_outside));
+  std::vector<JobStation> stations;
+  for (int i = 0; i <= more; ++i) {
+    const double along = more == 0 ? first : first + (last - first) * i / more;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      // Every other time from the other side: the machine need not go back across.
+      const auto& lanes = groups[i % 2 == 0 ? g : groups.size() - 1 - g];
+      stations.push_back({along, 0.5 * (lanes.front() + lanes.back()), lanes});
+    }
+  }
+  return stations;
+}
+
+BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,
+                 const Machine& machine) {
+  const Eigen::Vector2d place = frame.place(station.along, station.beside);
+  BasePose base = {place.x(), place.y(), 0.0, frame.heading};
+  const double half = 0.5 * machine.undercarriage_width();
+  double sum = 0.0;
+  int known = 0;
+  for (double x = -machine.track_front; x <= machine.track_front; x += ground.bank.cell_size) {
+    for (double y = -half; y <= half; y += ground.bank.cell_size) {
+      const Eigen::Vector2d at = frame.place(station.along + x, station.beside + y);
+      const auto cell = cell_at(ground.bank, at.x(), at.y());
+      const double z = cell ? ground.bank.z(cell->row, cell->col) : std::nan("");
+      if (std::isnan(z)) continue;
+      sum += z + ground.loose(cell->row, cell->col);
+      ++known;
+    }
+  }
+  if (known > 0) base.z = sum / known;
+  return base;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <excavplan/ground/terrain.hpp>
+
+#include "job/job_map.hpp"
+
+/// @file
+/// Where the machine stands one after the other, and what it digs from there. Private to the
+/// project.
+
+namespace excavplan {
+
+/// A place of the machine: along its line of work, and beside it.
+struct JobStation {
+  double along = 0.0;         ///< [m]
+  double beside = 0.0;        ///< [m]
+  std::vector<double> lanes;  ///< that it digs from there, beside the line of work [m]
+};
+
+/// The places of a job in their order, from the far end of the design to beyond its near end. From
+/// each one all that is within reach ahead is dug; where the design is wider than the lanes of one
+/// place, the machine moves aside before it goes back.
+std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
+
+/// The part of the design that is worked on from so far along the line, from the swing axis [m].
+struct WorkRange {
+  double near = 0.0;
+  double far = 0.0;
+};
+WorkRange work_range(const JobFrame& frame, const Machine& machine, double along);
+
+/// A machine at a station, on the mean height of the ground under its tracks.
+BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,
+                 const Machine& machine);
+
+}  // namespace excavplan

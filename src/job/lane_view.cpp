@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/lane_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace excavplan {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double edge_slack =
+    0.04;  // by which the bucket's edge may be beside the design; ours [m]
+
+/// Linear between the columns of a view; constant beyond.
+GroundProfile between_columns(const HeightMap& view, ArrayXd values) {
+  const double first = view.x(0);
+  const double cell = view.cell_size;
+  return [first, cell, values = std::move(values)](double x) {
+    const double at = (x - first) / cell;
+    const auto last = static_cast<double>(values.size() - 1);
+    if (!(at > 0.0)) return values(0);
+    if (at >= last) return values(values.size() - 1);
+    const auto left = static_cast<Index>(at);
+    const double share = at - static_cast<double>(left);
+    if (share == 0.0) return values(left);
+    return (1.0 - share) * values(left) + share * values(left + 1);
+  };
+}
+
+}  // namespace
+
+LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line,
+                   const Rectangle& extent, double bucket_width)
+    : ground_(ground, line, extent, ground.bank.cell_size),
+      surface_(ground_.terrain().surface()),
+      target_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), nan)),
+      dump_(Mask::Constant(surface_.z.rows(), surface_.z.cols(), false)),
+      counts_(dump_),
+      forbidden_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), -infinity)) {
+  for_each_cell(target_, [&](Cell at) {
+    const Eigen::Vector2d place = line.place(surface_.x(at.col), surface_.y(at.row));
+    const auto cell = cell_at(job.target, place.x(), place.y());
+    if (!cell) return;
+    target_(at.row, at.col) = job.target.z(cell->row, cell->col) - line.z;
+    dump_(at.row, at.col) = job.dump(cell->row, cell->col);
+    counts_(at.row, at.col) = job.counts(cell->row, cell->col);
+    forbidden_(at.row, at.col) = job.forbidden(cell->row, cell->col) - line.z;
+  });
+  look_under_bucket(bucket_width);
+}
+
+void LaneView::look_under_bucket(double bucket_width) {
+  const double cell = surface_.cell_size;
+  const auto row_of = [&](double y) { return (y - surface_.origin.y()) / cell; };
+  first_row_ = static_cast<Index>(std::round(row_of(-0.5 * bucket_width)));
+  end_row_ = static_cast<Index>(std::round(row_of(0.5 * bucket_width)));
+  const auto inner = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
+  floor_ = ground_at_ = highest_error_ = ArrayXd::Zero(columns());
+  for (Index col = 0; col < columns(); ++col) {
+    double floor = -infinity;
+    double sum = 0.0;
+    int known = 0;
+    for (Index row = first_row_; row < end_row_; ++row) {
+      const double z = surface_.z(row, col);
+      const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
+      const double target = target_(row, col);
+      if (!(is_edge && std::isnan(target)))
+        floor = std::max(floor, std::isnan(target) ? z : target);
+      if (forbidden_(row, col) > floor)
+        floor = std::isinf(forbidden_(row, col)) ? nan : forbidden_(row, col);
+      if (std::isnan(z)) continue;
+      sum += z;
+      ++known;
+      if (counts_(row, col)) highest_error_(col) = std::max(highest_error_(col), z - target);
+    }
+    ground_at_(col) = 2 * known > end_row_ - first_row_ ? sum / known : nan;
+    floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
+  }
+}
+
+GroundProfile LaneView::floor(double allowance) const {
+  // Nothing is dug where the floor is not known.
+  return between_columns(surface_, floor_.isNaN().select(ground_at_, floor_ + allowance));
+}
+
+GroundProfile LaneView::profile() const { return between_columns(surface_, ground_at_); }
+
+double LaneView::excess(Index col, double allowance) const {
+  const double floor = floor_(col) + allowance;
+  if (std::isnan(floor)) return 0.0;
+  double sum = 0.0;
+  for (Index row = first_row_; row < end_row_; ++row) {
+    const double above = surface_.z(row, col) - floor;
+    if (above > 0.0) sum += above;
+  }
+  return sum / static_cast<double>(end_row_ - first_row_);
+}
+
+ShapeChange LaneView::change(const TerrainPatch& patch) const {
+  const double area = surface_.cell_size * surface_.cell_size;
+  ShapeChange change;
+  for_each_cell(patch.bank, [&](Cell at) {
+    const Cell cell = {at.row + patch.row, at.col + patch.col};
+    const double before = surface_.z(cell.row, cell.col);
+    const double after = patch.bank(at.row, at.col) + patch.loose(at.row, at.col);
+    if (std::isnan(before) || before == after) return;
+    const double target = target_(cell.row, cell.col);
+    if (std::isnan(target)) {
+      if (after < before) change.too_deep += area * (before - after);
+      if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
+      return;
+    }
+    change.gained += area * (std::max(0.0, before - target) - std::max(0.0, after - target));
+    change.too_deep += area * (std::max(0.0, target - after) - std::max(0.0, target - before));
+  });
+  return change;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <excavplan/simulation/dig_along.hpp>
+
+#include "job/job_map.hpp"
+
+/// @file
+/// Ground and design along one line of digs. Private to the project.
+
+namespace excavplan {
+
+/// How the surface of a view changed.
+struct ShapeChange {
+  double gained = 0.0;    ///< of what lies above the design [m^3]
+  double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
+  double spilled = 0.0;   ///< risen beside the design and the dump areas [m^3]
+};
+
+/// What a machine sees along a line: heights are those of its path.
+class LaneView {
+ public:
+  LaneView(const Terrain& ground, const JobMap& job, const DigLine& line, const Rectangle& extent,
+           double bucket_width);
+
+  const GroundAlong& ground() const { return ground_; }
+  const HeightMap& surface() const { return surface_; }
+
+  /// The highest of the design under the bucket; beside the design the ground. So much higher [m].
+  GroundProfile floor(double allowance) const;
+  GroundProfile profile() const;  ///< of the ground, the mean under the bucket
+
+  Eigen::Index columns() const { return surface_.z.cols(); }
+  double x(Eigen::Index col) const { return surface_.x(col); }
+  double floor_at(Eigen::Index col) const { return floor_(col); }       ///< [m]; NaN: not known
+  double ground_at(Eigen::Index col) const { return ground_at_(col); }  ///< likewise
+  /// Mean thickness of what is above the floor under the bucket [m].
+  double excess(Eigen::Index col, double allowance) const;
+  /// Largest height of a cell that counts over the design under the bucket [m]; 0: none.
+  double highest_error(Eigen::Index col) const { return highest_error_(col); }
+
+  ShapeChange change(const TerrainPatch& patch) const;
+
+ private:
+  void look_under_bucket(double bucket_width);
+
+  GroundAlong ground_;
+  HeightMap surface_;
+  Eigen::ArrayXXd target_;  ///< in the view, NaN beside the design
+  Mask dump_;
+  Mask counts_;
+  Eigen::ArrayXXd forbidden_;
+  Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
+  Eigen::ArrayXd floor_, ground_at_, highest_error_;
+};
+
+}  // namespace excavplan

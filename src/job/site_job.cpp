@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/job/site_job.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <excavplan/simulation/dig_along.hpp>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "job/dump_place.hpp"
+#include "job/job_ground.hpp"
+#include "job/job_map.hpp"
+#include "job/job_record.hpp"
+#include "job/job_stations.hpp"
+#include "job/step_search.hpp"
+
+namespace excavplan {
+namespace {
+
+// Numbers of our own choice.
+constexpr std::size_t most_unseen = 5;   // digs between two scans
+constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
+constexpr double least_shaped = 0.004;   // of a finishing pass [m^3]
+constexpr double bulk_allowance = 1.0;   // over the design, in tolerances
+constexpr int most_passes = 24;          // along the floor from one station
+constexpr double least_seen = 0.99;      // of a finished design
+constexpr double after_stall = 0.7;      // of the depth of a cut
+constexpr double shallowest_cut = 0.06;  // [m]
+constexpr double stronger = 1.2;         // is the soil that stalled a dig
+
+JobProgress measured(const JobMap& map, const Terrain& ground, double tolerance) {
+  JobProgress progress;
+  const double area = map.target.cell_size * map.target.cell_size;
+  std::vector<double> errors;
+  double squares = 0.0;
+  int cells = 0;
+  int seen = 0;
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    if (std::isnan(target)) return;
+    ++cells;
+    const double error = ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col) - target;
+    if (std::isnan(error)) return;
+    ++seen;
+    progress.left_volume += area * std::max(0.0, error);
+    if (!map.counts(at.row, at.col)) return;
+    errors.push_back(std::abs(error));
+    squares += error * error;
+  });
+  progress.seen = cells > 0 ? static_cast<double>(seen) / cells : 0.0;
+  if (errors.empty()) return progress;
+  std::sort(errors.begin(), errors.end());
+  const auto count = static_cast<double>(errors.size());
+  progress.rms = std::sqrt(squares / count);
+  progress.p95 = errors[static_cast<std::size_t>(0.95 * (count - 1.0))];
+  progress.beyond_twice =
+      static_cast<double>(errors.end() -
+                          std::upper_bound(errors.begin(), errors.end(), 2.0 * tolerance)) /
+      count;
+  progress.is_finished =
+      progress.p95 <= tolerance && progress.beyond_twice <= 0.01 && progress.seen >= least_seen;
+  return progress;
+}
+
+}  // namespace
+
+struct SiteJob::State {
+  State(std::string where, JobSettings of_job)
+      : folder(std::move(where)), settings(std::move(of_job)), ground(folder, settings) {}
+
+  void look_at_design() {
+    map = map_of(settings, first.bank);
+    frame = frame_of(settings, map);
+    stations = stations_of(frame, settings);
+  }
+
+  JobStep decide();
+  std::optional<JobStep> dig_step(bool finishing);
+  JobStep move_step();
+  JobStep step_of(JobAction what, const std::string& reason = {});
+  void end_step(const StepReport& report);
+  void end_dig(const JobStep& step, const StepReport& report);
+  void take_scan(const StepReport& report);
+  void save();
+  std::string first_file() const { return folder + "/job-first-ground.tif"; }
+
+  std::string folder;
+  JobSettings settings;
+  JobGround ground;
+  Terrain first;  ///< before the job
+  JobMap map;
+  JobFrame frame;
+  std::vector<JobStation> stations;
+  JobRecord record;
+};
+
+JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
+  JobStep step;
+  step.id = record.last_step + 1;
+  step.what = what;
+  step.base = record.base;
+  step.reason = reason;
+  return step;
+}
+
+std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
+  const Machine& machine = settings.site.machine;
+  const Terrain& now = ground.expected();
+  const auto dump = dump_place(settings, map, now, record.base);
+  if (!dump) return std::nullopt;
+  BasePose straight = record.base;
+  straight.heading = frame.heading;
+  const Eigen::Vector2d at = frame.of({straight.x, straight.y});
+  const WorkRange range = work_range(frame, machine, at.x());
+  StepTask task{settings, map, now, straight, *dump, {}, range.near, range.far};
+  for (const double lane : stations[record.station].lanes) task.lanes.push_back(lane - at.y());
+  task.finishing = finishing;
+  task.allowance = (finishing ? 0.0 : bulk_allowance * settings.design.tolerance) -
+                   record.learning.height_bias.mean;
+  task.density_percent = settings.density_percent;
+  task.strength_factor = record.strength_factor;
+  task.deepest_cut = record.deepest_cut;
+  auto dig = best_dig(task);
+  if (!dig) return std::nullopt;
+  const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
+  if (dig->change.gained < least) return std::nullopt;
+  JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
+  step.swung = frame.heading - record.base.heading;
+  step.lane = dig->lane;
+  step.path = std::move(dig->path);
+  step.dump = dump->place;
+  if (dump->in_truck) step.truck = record.trucks;
+  step.predicted = record.learning.foretell(dig->dig);
+  record.planned = dig->dig;
+  return step;
+}
+
+JobStep SiteJob::State::move_step() {
+  ++record.station;
+  record.passes_here = 0;
+  JobStep step = step_of(JobAction::move);
+  step.base = base_at(frame, stations[record.station], ground.expected(), settings.site.machine);
+  return step;
+}
+
+JobStep SiteJob::State::decide() {
+  const bool is_fresh = ground.unseen().empty();
+  if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
+  if (auto step = dig_step(false)) return *std::move(step);
+  if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
+  if (record.passes_here < most_passes) {
+    if (auto step = dig_step(true)) return *std::move(step);
+  }
+  if (record.station + 1 < stations.size()) return move_step();
+  const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
+  return step_of(JobAction::stop, now.is_finished ? "finished" : "stuck: nothing more can be dug");
+}
+
+void SiteJob::State::take_scan(const StepReport& report) {
+  const bool was_taken = ground.site().updates() > record.site_updates;
+  if (!was_taken) {
+    SiteEvent event;
+    event.scan = *report.scan;
+    event.dug = false;
+    event.time = report.time;
+    event.base = record.base;
+    const auto off = ground.take_in(event);
+    // Of the edge in one dig, and of what a scan's registration leaves (ours).
+    constexpr double reading_sd = 0.012;
+    if (off) {
+      LearntNumber& bias = record.learning.height_bias;
+      bias.learn(bias.mean + *off, reading_sd * reading_sd);
+    }
+  }
+  record.site_updates = ground.site().updates();
+  ++record.progress.scans;
+}
+
+void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
+  record.learning.learn(*record.planned, report);
+  JobProgress& progress = record.progress;
+  const bool finishing = step.what == JobAction::finish;
+  ++(finishing ? progress.finishing_passes : progress.digs);
+  if (finishing) ++record.passes_here;
+  progress.payload_mass += report.payload_mass.value_or(step.predicted.payload_mass);
+  if (report.stalled) {
+    ++progress.stalls;
+    record.deepest_cut = std::max(shallowest_cut, after_stall * record.deepest_cut);
+    record.strength_factor *= stronger;
+  }
+  if (step.truck) {
+    record.truck_load += report.payload_mass.value_or(step.predicted.payload_mass);
+    if (record.truck_load >= settings.design.truck->target_mass) {
+      record.truck_load = 0.0;
+      ++record.trucks;
+    }
+  }
+  ground.expect({step, report.stalled}, record.learning.height_bias.mean);
+}
+
+void SiteJob::State::end_step(const StepReport& report) {
+  const JobStep step = *record.present;
+  if (step.what == JobAction::dig || step.what == JobAction::finish) end_dig(step, report);
+  if (step.what == JobAction::move) {
+    record.base = report.base.value_or(step.base);
+    ++record.progress.moves;
+  }
+  if (report.scan) take_scan(report);
+  record.last_step = step.id;
+  record.present.reset();
+  record.planned.reset();
+}
+
+void SiteJob::State::save() {
+  record.unseen = ground.unseen();
+  save_record(folder, record);
+}
+
+SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SiteJob::~SiteJob() = default;
+SiteJob::SiteJob(SiteJob&&) noexcept = default;
+SiteJob& SiteJob::operator=(SiteJob&&) noexcept = default;
+
+SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Scan& first,
+                       double time) {
+  require_job_settings(settings);
+  require(!holds_record(folder), folder +
+                                     ": holds a job already: go on with it, or begin it in "
+                                     "another folder");
+  auto state = std::make_unique<State>(folder, std::move(settings));
+  SiteEvent event;
+  event.scan = first;
+  event.dug = false;
+  event.time = time;
+  event.base = *state->settings.design.start;
+  (void)state->ground.take_in(event);
+  state->first = state->ground.expected();
+  save_ground(state->first_file(), state->ground.site().ground());
+  state->look_at_design();
+  JobRecord& record = state->record;
+  record.base = base_at(state->frame, {0.0, 0.0, {}}, state->first, state->settings.site.machine);
+  record.site_updates = state->ground.site().updates();
+  record.first_volume =
+      measured(state->map, state->first, state->settings.design.tolerance).left_volume;
+  state->save();
+  return SiteJob(std::move(state));
+}
+
+SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
+  require_job_settings(settings);
+  auto state = std::make_unique<State>(folder, std::move(settings));
+  state->record = load_record(folder);
+  state->first = load_ground(state->first_file()).terrain;
+  state->look_at_design();
+  for (const UnseenDig& dig : state->record.unseen) {
+    state->ground.expect(dig, state->record.learning.height_bias.mean);
+  }
+  return SiteJob(std::move(state));
+}
+
+JobStep SiteJob::next() {
+  JobRecord& record = state_->record;
+  if (!record.present) {
+    record.present = state_->decide();
+    state_->save();
+  }
+  return *record.present;
+}
+
+void SiteJob::done(long long step, const StepReport& report) {
+  const std::optional<JobStep>& present = state_->record.present;
+  if (!present || present->id != step || present->what == JobAction::stop) return;
+  state_->end_step(report);
+  state_->save();
+}
+
+JobProgress SiteJob::progress() const {
+  const JobRecord& record = state_->record;
+  JobProgress progress =
+      measured(state_->map, state_->ground.expected(), state_->settings.design.tolerance);
+  progress.design_volume = record.first_volume;
+  progress.digs = record.progress.digs;
+  progress.finishing_passes = record.progress.finishing_passes;
+  progress.moves = record.progress.moves;
+  progress.scans = record.progress.scans;
+  progress.stalls = record.progress.stalls;
+  progress.payload_mass = record.progress.payload_mass;
+  return progress;
+}
+
+const Terrain& SiteJob::ground() const { return state_->ground.expected(); }
+
+}  // namespace excavplan

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/step_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+#include "base/angles.hpp"
+#include "planning/simulated_dig.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Index;
+
+// Numbers of our own choice.
+constexpr double room_beyond = 2.0;  // of a view beyond the work, for the bucket and its pile [m]
+constexpr double room_beside = 2.0;  // of a view beside the line [m]
+constexpr double start_step = 0.4;   // between places where digs may begin [m]
+constexpr double least_excess = 0.015;  // of soil that is worth a dig [m]
+constexpr double too_deep_price = 4.0;  // of soil taken below the design, over that of the design
+constexpr double spill_price = 1.0;     // of soil spilled beside design and dump areas, likewise
+constexpr std::size_t most_confirmed = 8;                      // digs whose ground is looked at
+const std::array<double, 3> cut_depths = {0.12, 0.22, 0.35};   // [m]
+const std::array<double, 3> bulk_angles = {0.5, 0.9, 1.25};    // of penetration [rad]
+const std::array<double, 3> finish_angles = {0.25, 0.4, 0.6};  // likewise
+const std::array<double, 2> fills = {0.95,
+                                     1.25};  // soil in the way of the bucket, over its capacity
+
+/// A dig that is laid out.
+struct Candidate {
+  std::size_t lane = 0;
+  DigPath path;
+  PlannedDig dig{};
+  double worth = 0.0;  ///< by the soil that it lifts
+};
+
+class StepSearch {
+ public:
+  explicit StepSearch(const StepTask& task)
+      : task_(task),
+        machine_(task.settings.site.machine),
+        simulator_(machine_, with_strength(task.settings.site.soil, task.strength_factor),
+                   task.density_percent),
+        capacity_(heaped_capacity(machine_)) {
+    for (const double lane : task.lanes) {
+      views_.emplace_back(task.ground, task.map, dig_line(task.base, 0.0, lane), extent(),
+                          machine_.bucket.width_outside);
+    }
+  }
+
+  std::optional<StepDig> run() {
+    for (std::size_t lane = 0; lane < views_.size(); ++lane) lay_out(lane);
+    for (Candidate& candidate : candidates_) weigh(candidate);
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+    std::optional<StepDig> best;
+    std::size_t confirmed = 0;
+    for (const Candidate& candidate : candidates_) {
+      if (confirmed++ == most_confirmed || !(candidate.worth > 0.0)) break;
+      auto dig = confirm(candidate);
+      if (dig && (!best || dig->worth > best->worth)) best = std::move(dig);
+    }
+    return best;
+  }
+
+ private:
+  Rectangle extent() const {
+    const double cell = task_.ground.bank.cell_size;
+    const auto on_line = [&](double value) { return cell * std::floor(value / cell); };
+    const double half = on_line(0.5 * machine_.bucket.width_outside + room_beside);
+    return {on_line(std::max(task_.near - room_beyond, machine_.track_front)), -half,
+            on_line(task_.far + room_beyond), half};
+  }
+
+  void lay_out(std::size_t lane) {
+    const LaneView& view = views_[lane];
+    DigPathOptions rules;
+    rules.floor = view.floor(task_.allowance);
+    rules.drag_keeps_angle = task_.finishing;
+    const GroundProfile ground = view.profile();
+    for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
+      const double height = ground(start) - rules.floor(start);
+      if (std::isnan(height) || !is_worth_a_dig(view, start)) continue;
+      if (task_.finishing) {
+        for (const double angle : finish_angles) {
+          add(lane, {angle, 1.0, start - task_.near}, start, rules);
+        }
+        continue;
+      }
+      for (const double cut : cut_depths) {
+        const double depth = std::min({cut, task_.deepest_cut, std::max(height, 0.02)});
+        for (const double angle : bulk_angles) {
+          for (const double fill : fills) {
+            const double drag = drag_that_fills(view, start - depth / std::tan(angle), depth, fill);
+            add(lane, {angle, depth / std::sin(angle), drag}, start, rules);
+          }
+        }
+        if (depth < cut) break;  // the floor; the next would be the same
+      }
+    }
+  }
+
+  bool is_worth_a_dig(const LaneView& view, double start) const {
+    const double first = view.x(0);
+    const auto col = static_cast<Index>((start - start_step - first) / view.surface().cell_size);
+    return col > 0 && col < view.columns() && view.excess(col, task_.allowance) > least_excess;
+  }
+
+  /// The length of a drag at this depth that meets so much soil.
+  double drag_that_fills(const LaneView& view, double from, double depth, double fill) const {
+    const double cell = view.surface().cell_size;
+    const double bulking = 1.0 + simulator_.loose().void_ratio;
+    const double wanted = fill * capacity_ / bulking * (1.0 + simulator_.bank().void_ratio) /
+                          machine_.bucket.width_outside;
+    double met = 0.5 * depth * depth;  // about what the penetration takes
+    double x = from;
+    while (met < wanted && x > task_.near) {
+      const auto col = static_cast<Index>((x - view.x(0)) / cell);
+      if (col < 0 || col >= view.columns()) break;
+      met += cell * std::min(depth, view.excess(col, task_.allowance));
+      x -= cell;
+    }
+    return std::max(0.2, from - x);
+  }
+
+  void add(std::size_t lane, const DigParameters& parameters, double start,
+           const DigPathOptions& rules) {
+    auto path = make_dig_path(machine_, parameters, start, views_[lane].profile(), rules);
+    if (auto* made = std::get_if<DigPath>(&path)) candidates_.push_back({lane, std::move(*made)});
+  }
+
+  CycleOptions cycle() const {
+    CycleOptions options;
+    options.swing = task_.dump.swing;
+    options.dump_height = task_.dump.height;
+    return options;
+  }
+
+  double cost(const PlannedDig& dig) const {
+    return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
+  }
+
+  void weigh(Candidate& candidate) {
+    const Terrain& ground = views_[candidate.lane].ground().terrain();
+    const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle());
+    if (!std::holds_alternative<PlannedDig>(dig)) return;
+    candidate.dig = std::get<PlannedDig>(dig);
+    candidate.worth = candidate.dig.payload_mass / cost(candidate.dig);
+  }
+
+  std::optional<StepDig> confirm(const Candidate& candidate) const {
+    const LaneView& view = views_[candidate.lane];
+    auto dug = dig_to_rest(machine_, simulator_, view.ground().terrain(), candidate.path, cycle());
+    auto* found = std::get_if<SimulatedDig>(&dug);
+    if (found == nullptr) return std::nullopt;
+    StepDig step;
+    step.lane = task_.lanes[candidate.lane];
+    step.path = candidate.path;
+    step.dig = found->dig;
+    step.result = std::move(found->result);
+    step.change = view.change(step.result.patch);
+    const double gain = step.change.gained - too_deep_price * step.change.too_deep -
+                        spill_price * step.change.spilled;
+    if (!(gain > 0.0)) return std::nullopt;
+    step.worth = gain / cost(step.dig);
+    return step;
+  }
+
+  const StepTask& task_;
+  const Machine& machine_;
+  HeightMapSimulator simulator_;
+  double capacity_;
+  std::vector<LaneView> views_;
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+SoilKind with_strength(SoilKind soil, double factor) {
+  soil.cohesion_loosest *= factor;
+  soil.cone_index_reference *= factor;
+  return soil;
+}
+
+std::optional<StepDig> best_dig(const StepTask& task) { return StepSearch(task).run(); }
+
+}  // namespace excavplan

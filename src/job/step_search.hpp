@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <excavplan/job/job_settings.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+
+#include "job/dump_place.hpp"
+#include "job/lane_view.hpp"
+
+/// @file
+/// The dig from one place that gains most of the design for its cost. Private to the project.
+
+namespace excavplan {
+
+/// What a machine may dig from where it stands.
+struct StepTask {
+  const JobSettings& settings;
+  const JobMap& map;
+  const Terrain& ground;
+  BasePose base;
+  DumpPlace dump;
+  std::vector<double> lanes;      ///< beside the swing axis [m]
+  double near = 0.0;              ///< from the swing axis to the nearest part of the work [m]
+  double far = 0.0;               ///< to the farthest [m]
+  bool finishing = false;         ///< along the floor, for its shape
+  double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
+  double density_percent = 50.0;  ///< of the bank, as believed
+  double strength_factor = 1.0;   ///< on the soil's strength, as believed
+  double deepest_cut = 0.5;       ///< of one dig below the ground [m]
+};
+
+/// A dig, with what it does to the shape of the ground.
+struct StepDig {
+  double lane = 0.0;  ///< [m]
+  DigPath path;       ///< in the frame of the lane
+  PlannedDig dig;     ///< with its cycle
+  DigResult result;   ///< of the ground of its lane
+  ShapeChange change;
+  double worth = 0.0;  ///< volume of the design per cost of the cycle [m^3/J]
+};
+
+/// @return nothing if no dig gains anything
+std::optional<StepDig> best_dig(const StepTask& task);
+
+/// The same soil, so many times as strong.
+SoilKind with_strength(SoilKind soil, double factor);
+
+}  // namespace excavplan
