@@ -9,15 +9,16 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr double nearest_work = 1.3;  // before the tracks, so that the bucket has room to curl [m]
-constexpr double farthest_work = 0.82;  // of the reach of the front from its pin
+constexpr double nearest_work = 1.45;  // before the tracks, so that the bucket has room to curl [m]
+constexpr double farthest_work = 0.77;  // of the reach of the front from its pin
 constexpr double overlap = 0.4;         // of what is dug from two places in succession [m]
+constexpr double side_margin = 0.02;    // to the sides of the design, as no machine is exact [m]
 constexpr double lane_overlap = 0.1;    // of two lanes [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
-  const double half = 0.5 * bucket_width;
+  const double half = 0.5 * bucket_width + side_margin;
   const double right = frame.right + half;
   const double left = frame.left - half;
   if (left <= right) return {0.5 * (frame.left + frame.right)};
