@@ -206,7 +206,8 @@ void save_record(const std::string& folder, const JobRecord& record) {
                {"base", base_json(record.base)},
                {"last_step", record.last_step},
                {"site_updates", record.site_updates},
-               {"wants_scan", record.wants_scan}};
+               {"wants_scan", record.wants_scan},
+               {"has_arrived", record.has_arrived}};
   for_each_count(record, [&](const char* key, int value) { json[key] = value; });
   for_each_number(record, [&](const char* key, double value) { json[key] = value; });
   json["learning"] = learning_json(record.learning);
@@ -228,6 +229,7 @@ JobRecord load_record(const std::string& folder) {
   record.last_step = static_cast<long long>(object.number("last_step", 0, 1e12));
   record.site_updates = static_cast<long long>(object.number("site_updates", 0, 1e12));
   record.wants_scan = object.flag("wants_scan");
+  record.has_arrived = object.flag("has_arrived");
   for_each_count(record, [&](const char* key, int& value) {
     value = static_cast<int>(object.number(key, 0, 1e9));
   });

@@ -28,6 +28,7 @@ struct JobRecord {
   std::vector<JobStep> unseen;        ///< digs since the last scan
   long long site_updates = 0;         ///< scans that the site had taken in
   double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall
+  bool has_arrived = false;           ///< at its present station
   bool wants_scan = false;            ///< after a stall
   int passes_here = 0;                ///< along the floor from this station
   int fruitless = 0;                  ///< scans in succession after which nothing was to be done

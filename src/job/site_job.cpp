@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t most_unseen = 5;   // digs between two scans
 constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
 constexpr double least_shaped = 0.004;   // of a finishing pass [m^3]
-constexpr double bulk_allowance = 1.0;   // over the design, in tolerances
+constexpr double bulk_allowance = 0.5;   // over the design, in tolerances
 constexpr int most_passes = 24;          // along the floor from one station
 constexpr int most_fruitless = 2;        // passes in succession that took nothing off
 constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
@@ -111,7 +111,10 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   const Machine& machine = settings.site.machine;
   const Terrain& now = ground.expected();
   const auto dump = dump_place(settings, map, now, record.base);
-  if (!dump) return std::nullopt;
+  if (!dump) {
+    fprintf(stderr, "no dump place\n");
+    return std::nullopt;
+  }
   BasePose straight = record.base;
   straight.heading = frame.heading;
   const Eigen::Vector2d at = frame.of({straight.x, straight.y});
@@ -142,15 +145,13 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
 }
 
 JobStep SiteJob::State::move_step() {
-  ++record.station;
-  record.passes_here = 0;
-  record.fruitless = 0;
   JobStep step = step_of(JobAction::move);
   step.base = base_at(frame, stations[record.station], ground.expected(), settings.site.machine);
   return step;
 }
 
 JobStep SiteJob::State::decide() {
+  if (!record.has_arrived) return move_step();
   const bool is_fresh = ground.unseen().empty();
   if (record.wants_scan) return step_of(JobAction::scan, "to see where the dig stalled");
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
@@ -159,7 +160,12 @@ JobStep SiteJob::State::decide() {
   if (record.passes_here < most_passes && record.fruitless < most_fruitless) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
-  if (record.station + 1 < stations.size()) return move_step();
+  if (record.station + 1 < stations.size()) {
+    ++record.station;
+    record.passes_here = 0;
+    record.fruitless = 0;
+    return move_step();
+  }
   const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
   return step_of(JobAction::stop, now.is_finished ? "finished" : "stuck: nothing more can be dug");
 }
@@ -215,6 +221,7 @@ void SiteJob::State::end_step(const StepReport& report) {
   if (step.what == JobAction::dig || step.what == JobAction::finish) end_dig(step, report);
   if (step.what == JobAction::move) {
     record.base = report.base.value_or(step.base);
+    record.has_arrived = true;
     ++record.progress.moves;
   }
   if (report.scan) take_scan(report);

@@ -23,13 +23,14 @@ constexpr double room_beside = 2.0;  // of a view beside the line [m]
 constexpr double start_step = 0.4;   // between places where digs may begin [m]
 constexpr double least_excess = 0.015;  // of soil that is worth a dig [m]
 constexpr double too_deep_price = 4.0;  // of soil taken below the design, over that of the design
-constexpr double spill_price = 1.0;     // of soil spilled beside design and dump areas, likewise
+constexpr double spill_price = 2.0;     // of soil spilled beside design and dump areas, likewise
 constexpr std::size_t most_confirmed = 8;  // digs whose ground is looked at
 constexpr double level_from = 0.2;  // before the start of a dig, the ground whose level counts [m]
 constexpr double level_to = 1.2;    // likewise [m]
-const std::array<double, 4> cut_depths = {0.06, 0.12, 0.2, 0.32};  // of the layer of a drag [m]
-constexpr double heel_clearance = 0.12;  // over the line of penetration [rad]
-constexpr double shortest_drag = 0.2;    // [m]
+const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
+                                          0.22, 0.32, 0.45};  // of the layer of a drag [m]
+constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
+constexpr double shortest_drag = 0.2;                         // [m]
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
 struct Attitude {
@@ -37,10 +38,10 @@ struct Attitude {
   bool is_kept;
 };
 const std::array<Attitude, 5> attitudes = {
-    {{0.3, true}, {0.5, true}, {0.7, true}, {0.9, false}, {1.25, false}}};
+    {{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}, {1.1, false}}};
 const std::array<double, 3> finish_angles = {0.15, 0.3, 0.5};  // likewise
-const std::array<double, 2> fills = {0.95,
-                                     1.25};  // soil in the way of the bucket, over its capacity
+const std::array<double, 2> fills = {0.9,
+                                     1.15};  // soil in the way of the bucket, over its capacity
 
 /// A dig that is laid out.
 struct Candidate {
