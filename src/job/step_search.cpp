@@ -118,18 +118,18 @@ class StepSearch {
         const double depth = std::max(ground(start) - level, 0.0) + cut;
         for (const Attitude& attitude : attitudes) {
           rules.drag_keeps_angle = attitude.is_kept;
-          lay_out_layer(lane, start, {attitude.angle, depth, cut}, rules);
+          lay_out_layer(lane, start, {attitude.angle, depth, ground(start) - depth}, rules);
         }
         if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
       }
     }
   }
 
-  /// A penetration, and how thick a layer the drag takes.
+  /// A penetration and the height of the drag after it.
   struct Layer {
     double angle;
-    double depth;  ///< [m]
-    double cut;    ///< [m]
+    double depth;   ///< [m]
+    double height;  ///< of the drag [m]
   };
 
   void lay_out_layer(std::size_t lane, double start, const Layer& layer,
@@ -139,7 +139,8 @@ class StepSearch {
     const double longest = from - nearest(layer.angle);
     if (!(longest > shortest_drag)) return;
     for (const double fill : fills) {
-      const double drag = std::min(drag_that_fills(views_[lane], from, layer.cut, fill), longest);
+      const double drag =
+          std::min(drag_that_fills(views_[lane], from, layer.height, fill), longest);
       if (drag == last) break;
       add(lane, {layer.angle, layer.depth / std::sin(layer.angle), drag}, start, rules);
       last = drag;
@@ -174,18 +175,19 @@ class StepSearch {
     return col > 0 && col < view.columns() && view.excess(col, task_.allowance) > least_excess;
   }
 
-  /// The length of a drag at this depth that meets so much soil.
-  double drag_that_fills(const LaneView& view, double from, double depth, double fill) const {
+  /// The length of a drag at this height that meets so much soil.
+  double drag_that_fills(const LaneView& view, double from, double height, double fill) const {
     const double cell = view.surface().cell_size;
-    const double bulking = 1.0 + simulator_.loose().void_ratio;
-    const double wanted = fill * capacity_ / bulking * (1.0 + simulator_.bank().void_ratio) /
-                          machine_.bucket.width_outside;
-    double met = 0.5 * depth * depth;  // about what the penetration takes
+    const double bulking =
+        (1.0 + simulator_.loose().void_ratio) / (1.0 + simulator_.bank().void_ratio);
+    const double wanted = fill * capacity_ / bulking / machine_.bucket.width_outside;
+    double met = 0.0;
     double x = from;
     while (met < wanted && x > task_.near) {
       const auto col = static_cast<Index>((x - view.x(0)) / cell);
       if (col < 0 || col >= view.columns()) break;
-      met += cell * std::min(depth, view.excess(col, task_.allowance));
+      const double above = view.ground_at(col) - height;
+      if (above > 0.0) met += cell * std::min(above, view.excess(col, task_.allowance));
       x -= cell;
     }
     return std::max(shortest_drag, from - x);
