@@ -74,6 +74,7 @@ class PlainPlanner : public JobPlanner {
     find_design(first_scan);
     base_.z = ground_.at(base_.x, base_.y);
     if (policy.digs == PlainPolicy::Digs::searched) search();
+    if (policy.digs == PlainPolicy::Digs::fixed) place_fixed();
     arrive();
   }
 
@@ -325,6 +326,7 @@ class PlainPlanner : public JobPlanner {
     double deepest = drag_start(), most = -1.0;
     for (double x = drag_start(); x > drag_end(); x -= 0.5 * sample) {
       const double ground = ground_at(base_along() + x, lane.left);
+      if (!(ground > level + least_layer)) continue;  // dug already
       double z = ground;
       double at = x;
       while (z > level && z >= floor_at(base_along() + at, lane.left)) {
@@ -365,12 +367,20 @@ class PlainPlanner : public JobPlanner {
     return step;
   }
 
+  /// From where the joints have most room.
+  void place_fixed() {
+    const auto path = make_dig_path_anywhere(machine_, numbers_, [](double) { return 0.0; });
+    if (const auto* found = std::get_if<DigPath>(&path)) policy_.farthest = found->start_x;
+  }
+
   void search() {
     PlanOptions options;
     options.method = PlanMethod::search;
     options.search.stop.evaluations = evaluations;
     const DigPlan plan = plan_dig(machine_, site_.soil, site_.density.percent, options);
-    if (plan.dig) numbers_ = plan.dig->parameters;
+    if (!plan.dig) return;
+    numbers_ = plan.dig->parameters;
+    policy_.farthest = plan.dig->start_x;
   }
 
   PlainPolicy policy_;
