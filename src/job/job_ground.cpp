@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <excavplan/simulation/dig_along.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -19,11 +20,6 @@ constexpr std::size_t least_cells = 40;  // of a cut that tells its height
 constexpr double least_cut = 0.01;       // of a cell that was cut [m]
 constexpr double cleanest = 0.005;       // loose soil on it, at most [m]
 constexpr double most_off = 0.1;         // more is no error of tracking [m]
-
-Terrain without_doubts(Terrain terrain) {
-  terrain.doubts.clear();
-  return terrain;
-}
 
 std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
                                 const Terrain& scanned) {
@@ -41,40 +37,68 @@ std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
   return median(off);
 }
 
+/// Where a scan did not see what was dug, it is as foretold.
+void keep_unseen(const Terrain& expected, const Eigen::ArrayXXd& seen, double time,
+                 Terrain& scanned) {
+  if (!same_grid(expected.bank, scanned.bank)) return;
+  for_each_cell(seen, [&](Cell at) {
+    if (seen(at.row, at.col) >= time) return;
+    scanned.bank.z(at.row, at.col) = expected.bank.z(at.row, at.col);
+    scanned.loose(at.row, at.col) = expected.loose(at.row, at.col);
+    if (scanned.loose_void_ratio.size() == 0 || expected.loose_void_ratio.size() == 0) return;
+    scanned.loose_void_ratio(at.row, at.col) = expected.loose_void_ratio(at.row, at.col);
+  });
+}
+
 }  // namespace
 
 JobGround::JobGround(const std::string& folder, const JobSettings& settings)
-    : settings_(settings), site_(folder, settings.site, SiteAccess::write) {
-  if (!site_.is_empty()) begin_anew();
-}
+    : folder_(folder), settings_(settings), site_(folder, settings.site, SiteAccess::write) {}
 
-void JobGround::begin_anew() {
-  unseen_.clear();
-  expected_ = without_doubts(site_.ground().terrain);
-}
-
-void JobGround::expect(const UnseenDig& dig, double height_bias) {
+void JobGround::expect(const JobStep& dig, double height_bias) {
   const Machine& machine = settings_.site.machine;
   const SoilKind& soil = settings_.site.soil;
   const HeightMapSimulator simulator(machine, soil, settings_.density_percent);
-  DigLine line = dig_line(dig.step.base, dig.step.swung, dig.step.lane);
+  DigLine line = dig_line(dig.base, dig.swung, dig.lane);
   line.z += height_bias;
-  const DigResult result = dig_along(simulator, machine, expected_, line,
-                                     soil_voids(soil, settings_.density_percent), dig.step.path);
+  const SoilVoids voids = soil_voids(soil, settings_.density_percent);
+  const DigResult result = dig_along(simulator, machine, expected_, line, voids, dig.path);
   apply(result.patch, expected_);
-  if (!dig.step.truck) {
-    heap_soil(expected_, soil, settings_.density_percent, dig.step.dump.head<2>(),
+  if (!dig.truck) {
+    heap_soil(expected_, soil, settings_.density_percent, dig.dump.head<2>(),
               result.payload_volume);
   }
   unseen_.push_back(dig);
 }
 
 std::optional<double> JobGround::take_in(const SiteEvent& event) {
-  const Terrain before = site_.is_empty() ? Terrain{} : site_.ground().terrain;
   const Terrain expected = std::move(expected_);
+  const Terrain before = std::move(scanned_);
   const SiteUpdate update = site_.update(event);
-  begin_anew();
-  return update.taken ? cut_above(expected, before, expected_) : std::nullopt;
+  scanned_ = site_.ground().terrain;
+  scanned_.doubts.clear();
+  keep_unseen(expected, site_.ground().seen, event.time, scanned_);
+  expected_ = scanned_;
+  unseen_.clear();
+  return update.taken ? cut_above(expected, before, scanned_) : std::nullopt;
+}
+
+std::string JobGround::file_of(long long number) const {
+  return folder_ + "/job-ground-" + std::to_string(number) + ".tif";
+}
+
+void JobGround::save(long long number) const {
+  GroundState state = site_.ground();
+  state.terrain = scanned_;
+  save_ground(file_of(number), state);
+  std::error_code none;
+  std::filesystem::remove(file_of(number - 2), none);
+}
+
+void JobGround::load(long long number) {
+  scanned_ = load_ground(file_of(number)).terrain;
+  expected_ = scanned_;
+  unseen_.clear();
 }
 
 }  // namespace excavplan

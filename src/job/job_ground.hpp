@@ -16,36 +16,39 @@
 
 namespace excavplan {
 
-/// A dig that was done since the last scan.
-struct UnseenDig {
-  JobStep step;
-  bool stalled = false;
-};
-
+/// The site of a job with the digs that no scan has shown yet: where a scan does not see what was
+/// dug, it stays as foretold.
 class JobGround {
  public:
-  /// Opens the site of a folder, whose first scan was taken in.
+  /// Opens the site of a folder.
   JobGround(const std::string& folder, const JobSettings& settings);
 
   const Site& site() const { return site_; }
   const Terrain& expected() const { return expected_; }
-  const std::vector<UnseenDig>& unseen() const { return unseen_; }
+  /// Digs since the last scan, in their order.
+  const std::vector<JobStep>& unseen() const { return unseen_; }
 
   /// The dig as the simulator foretells it, with the edge so far above the path [m].
-  void expect(const UnseenDig& dig, double height_bias);
-  /// Takes in a scan of the ground. Not if the site took it in already (SiteEvent of a step that
-  /// was told twice).
+  void expect(const JobStep& dig, double height_bias);
+  /// Takes in a scan of the ground.
   /// @return the median of how far the cuts since the last scan lie above where they were expected
   /// [m], over cells without loose soil; nothing of too few
   std::optional<double> take_in(const SiteEvent& event);
 
- private:
-  void begin_anew();
+  /// Writes the ground at the last scan. @param number  of the site's updates
+  void save(long long number) const;
+  /// Goes on from what was written at that scan.
+  void load(long long number);
 
+ private:
+  std::string file_of(long long number) const;
+
+  std::string folder_;
   const JobSettings& settings_;
   Site site_;
-  Terrain expected_;
-  std::vector<UnseenDig> unseen_;
+  Terrain scanned_;   ///< at the last scan
+  Terrain expected_;  ///< with what was dug since
+  std::vector<JobStep> unseen_;
 };
 
 }  // namespace excavplan

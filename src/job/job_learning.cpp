@@ -10,9 +10,14 @@ namespace {
 
 // Numbers of our own choice.
 constexpr double normal_95 = 1.959963984540054;
-constexpr double memory = 0.1;        // of the scatter, of each new reading
-constexpr double drift = 0.02;        // of the two ratios from dig to dig, as the soil changes
-constexpr double least_energy = 0.1;  // of the dig in that of its cycle, to tell its own
+constexpr double memory = 0.1;            // of the scatter, of each new reading
+constexpr double drift = 0.02;            // of the two ratios from dig to dig, as the soil changes
+constexpr double strength_share = 0.5;    // of the energy of a dig that grows with the strength
+constexpr double strength_reading = 0.4;  // sd of ln of the strength by the energy of a dig
+constexpr double stall_surprise = 2.0;    // of a stall: so many deviations stronger than expected
+constexpr double least_doubt = 0.15;      // about ln of the strength, from place to place
+constexpr double least_fill = 0.3;        // of a bucket that teaches anything
+constexpr double least_energy = 0.1;      // of the dig in that of its cycle, to tell its own
 
 void learn_ratio(LearntNumber& ratio, double& scatter, double reading) {
   ratio.variance += drift * drift;
@@ -52,16 +57,27 @@ ForetoldStep JobLearning::foretell(const PlannedDig& dig) const {
 }
 
 void JobLearning::learn(const PlannedDig& dig, const StepReport& report) {
-  if (report.stalled) return;
-  if (report.payload_mass && *report.payload_mass > 0.0 && dig.payload_mass > 0.0) {
+  if (report.stalled) {
+    const double sd = strength.sd();
+    strength.learn(strength.mean + stall_surprise * sd, sd * sd);
+    return;
+  }
+  if (dig.fill < least_fill) return;
+  if (report.payload_mass && *report.payload_mass > 0.0) {
     learn_ratio(payload, payload_scatter, std::log(*report.payload_mass / dig.payload_mass));
   }
   const double rest = dig.cycle_energy - dig.energy;
   if (report.joint_work && dig.energy > least_energy * dig.cycle_energy &&
       *report.joint_work > rest) {
-    learn_ratio(energy, energy_scatter, std::log((*report.joint_work - rest) / dig.energy));
+    const double ratio = std::log((*report.joint_work - rest) / dig.energy);
+    learn_ratio(energy, energy_scatter, ratio);
+    strength.learn(strength.mean + ratio / strength_share, strength_reading * strength_reading);
   }
-  ++readings;
+}
+
+double JobLearning::strength_factor() const { return std::exp(strength.mean); }
+double JobLearning::hard_factor() const {
+  return std::exp(strength.mean + std::max(strength.sd(), least_doubt));
 }
 
 }  // namespace excavplan

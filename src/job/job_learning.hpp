@@ -27,10 +27,13 @@ struct JobLearning {
   LearntNumber energy = {0.0, 0.25 * 0.25};         ///< ln(energy of the dig / simulated)
   double payload_scatter = 0.05 * 0.05;             ///< variance from dig to dig of that logarithm
   double energy_scatter = 0.08 * 0.08;              ///< likewise
-  int readings = 0;
+  LearntNumber strength = {0.0, 0.35 * 0.35};       ///< ln of the factor on the soil's strength
 
   ForetoldStep foretell(const PlannedDig& dig) const;
   void learn(const PlannedDig& dig, const StepReport& report);
+
+  double strength_factor() const;  ///< that is expected
+  double hard_factor() const;      ///< that a dig should not stall at
 };
 
 }  // namespace excavplan

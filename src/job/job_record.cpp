@@ -158,7 +158,8 @@ PlannedDig read_planned(const std::vector<double>& numbers) {
 Json learning_json(const JobLearning& learning) {
   return {learning.height_bias.mean, learning.height_bias.variance, learning.payload.mean,
           learning.payload.variance, learning.energy.mean,          learning.energy.variance,
-          learning.payload_scatter,  learning.energy_scatter,       learning.readings};
+          learning.payload_scatter,  learning.energy_scatter,       learning.strength.mean,
+          learning.strength.variance};
 }
 
 JobLearning read_learning(const std::vector<double>& numbers) {
@@ -168,7 +169,7 @@ JobLearning read_learning(const std::vector<double>& numbers) {
   learning.energy = {numbers[4], numbers[5]};
   learning.payload_scatter = numbers[6];
   learning.energy_scatter = numbers[7];
-  learning.readings = static_cast<int>(numbers[8]);
+  learning.strength = {numbers[8], numbers[9]};
   return learning;
 }
 
@@ -189,7 +190,6 @@ void for_each_count(Record& record, Visit visit) {
 template <typename Record, typename Visit>
 void for_each_number(Record& record, Visit visit) {
   visit("deepest_cut_m", record.deepest_cut);
-  visit("strength_factor", record.strength_factor);
   visit("truck_load_kg", record.truck_load);
   visit("first_volume_m3", record.first_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
@@ -205,15 +205,17 @@ void save_record(const std::string& folder, const JobRecord& record) {
                {"station", record.station},
                {"base", base_json(record.base)},
                {"last_step", record.last_step},
-               {"site_updates", record.site_updates}};
+               {"site_updates", record.site_updates},
+               {"wants_scan", record.wants_scan},
+               {"has_arrived", record.has_arrived}};
   for_each_count(record, [&](const char* key, int value) { json[key] = value; });
   for_each_number(record, [&](const char* key, double value) { json[key] = value; });
   json["learning"] = learning_json(record.learning);
   if (record.present) json["present"] = step_json(*record.present);
   if (record.planned) json["planned"] = planned_json(*record.planned);
   json["unseen"] = Json::array();
-  for (const UnseenDig& dig : record.unseen) {
-    json["unseen"].push_back({{"step", step_json(dig.step)}, {"stalled", dig.stalled}});
+  for (const JobStep& dig : record.unseen) {
+    json["unseen"].push_back(step_json(dig));
   }
   write_own_file(path_of(folder), sealed_text(json));
 }
@@ -226,17 +228,18 @@ JobRecord load_record(const std::string& folder) {
   record.base = read_base(object);
   record.last_step = static_cast<long long>(object.number("last_step", 0, 1e12));
   record.site_updates = static_cast<long long>(object.number("site_updates", 0, 1e12));
+  record.wants_scan = object.flag("wants_scan");
+  record.has_arrived = object.flag("has_arrived");
   for_each_count(record, [&](const char* key, int& value) {
     value = static_cast<int>(object.number(key, 0, 1e9));
   });
   for_each_number(record,
                   [&](const char* key, double& value) { value = object.number(key, 0, 1e12); });
-  record.learning = read_learning(object.numbers("learning", 9));
+  record.learning = read_learning(object.numbers("learning", 10));
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));
   for (JsonObject& each : object.objects("unseen")) {
-    record.unseen.push_back({read_step(each.object("step")), each.flag("stalled")});
-    each.done();
+    record.unseen.push_back(read_step(std::move(each)));
   }
   object.done();
   return record;

@@ -25,10 +25,11 @@ struct JobRecord {
   long long last_step = 0;            ///< number of the step that was made last
   std::optional<JobStep> present;     ///< that is not done yet
   std::optional<PlannedDig> planned;  ///< of it, if it is a dig
-  std::vector<UnseenDig> unseen;      ///< digs since the last scan
+  std::vector<JobStep> unseen;        ///< digs since the last scan
   long long site_updates = 0;         ///< scans that the site had taken in
   double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall
-  double strength_factor = 1.0;       ///< on the soil's strength; more after a stall
+  bool has_arrived = false;           ///< at its present station
+  bool wants_scan = false;            ///< after a stall
   int passes_here = 0;                ///< along the floor from this station
   int fruitless = 0;                  ///< scans in succession after which nothing was to be done
   double truck_load = 0.0;            ///< in the present truck [kg]

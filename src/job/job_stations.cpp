@@ -9,15 +9,18 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr double nearest_work = 1.3;  // before the tracks, so that the bucket has room to curl [m]
-constexpr double farthest_work = 0.82;  // of the reach of the front from its pin
-constexpr double overlap = 0.4;         // of what is dug from two places in succession [m]
-constexpr double lane_overlap = 0.1;    // of two lanes [m]
+constexpr double nearest_work = 1.45;  // before the tracks, so that the bucket has room to curl [m]
+constexpr double farthest_work = 0.77;  // of the reach of the front from its pin
+constexpr double end_wall =
+    1.6;                         // from the nearest work to the far end: steep cuts need weight [m]
+constexpr double overlap = 0.4;  // of what is dug from two places in succession [m]
+constexpr double side_margin = 0.03;  // to the sides of the design, as no machine is exact [m]
+constexpr double lane_overlap = 0.1;  // of two lanes [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
-  const double half = 0.5 * bucket_width;
+  const double half = 0.5 * bucket_width + side_margin;
   const double right = frame.right + half;
   const double left = frame.left - half;
   if (left <= right) return {0.5 * (frame.left + frame.right)};
@@ -51,9 +54,7 @@ WorkRange work_range(const JobFrame& frame, const Machine& machine, double along
 
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
   const Machine& machine = settings.site.machine;
-  const double start = 0.0;  // the machine's own place is the origin of the frame
-  const double first = std::max(frame.far - farthest_of(machine),
-                                std::min(start, frame.far - nearest_of(machine) - 1.0));
+  const double first = frame.far - nearest_of(machine) - end_wall;
   const double last = std::min(first, frame.near - nearest_of(machine));
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));

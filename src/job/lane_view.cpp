@@ -112,7 +112,8 @@ ShapeChange LaneView::change(const TerrainPatch& patch) const {
     if (std::isnan(before) || before == after) return;
     const double target = target_(cell.row, cell.col);
     if (std::isnan(target)) {
-      if (after < before) change.too_deep += area * (before - after);
+      const double bank = ground_.terrain().bank.z(cell.row, cell.col);
+      change.too_deep += area * std::max(0.0, bank - patch.bank(at.row, at.col));
       if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
       return;
     }

@@ -24,12 +24,13 @@ namespace {
 constexpr std::size_t most_unseen = 5;   // digs between two scans
 constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
 constexpr double least_shaped = 0.004;   // of a finishing pass [m^3]
-constexpr double bulk_allowance = 1.0;   // over the design, in tolerances
+constexpr double bulk_allowance = 0.5;   // over the design, in tolerances
 constexpr int most_passes = 24;          // along the floor from one station
+constexpr int most_fruitless = 2;        // passes in succession that took nothing off
+constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
 constexpr double least_seen = 0.99;      // of a finished design
 constexpr double after_stall = 0.7;      // of the depth of a cut
 constexpr double shallowest_cut = 0.06;  // [m]
-constexpr double stronger = 1.2;         // is the soil that stalled a dig
 
 JobProgress measured(const JobMap& map, const Terrain& ground, double tolerance) {
   JobProgress progress;
@@ -110,7 +111,10 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   const Machine& machine = settings.site.machine;
   const Terrain& now = ground.expected();
   const auto dump = dump_place(settings, map, now, record.base);
-  if (!dump) return std::nullopt;
+  if (!dump) {
+    fprintf(stderr, "no dump place\n");
+    return std::nullopt;
+  }
   BasePose straight = record.base;
   straight.heading = frame.heading;
   const Eigen::Vector2d at = frame.of({straight.x, straight.y});
@@ -121,10 +125,12 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   task.allowance = (finishing ? 0.0 : bulk_allowance * settings.design.tolerance) -
                    record.learning.height_bias.mean;
   task.density_percent = settings.density_percent;
-  task.strength_factor = record.strength_factor;
+  task.strength_factor = record.learning.strength_factor();
+  task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
   auto dig = best_dig(task);
   if (!dig) return std::nullopt;
+
   const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
   if (dig->change.gained < least) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
@@ -139,43 +145,47 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
 }
 
 JobStep SiteJob::State::move_step() {
-  ++record.station;
-  record.passes_here = 0;
   JobStep step = step_of(JobAction::move);
   step.base = base_at(frame, stations[record.station], ground.expected(), settings.site.machine);
   return step;
 }
 
 JobStep SiteJob::State::decide() {
+  if (!record.has_arrived) return move_step();
   const bool is_fresh = ground.unseen().empty();
+  if (record.wants_scan) return step_of(JobAction::scan, "to see where the dig stalled");
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   if (auto step = dig_step(false)) return *std::move(step);
   if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
-  if (record.passes_here < most_passes) {
+  if (record.passes_here < most_passes && record.fruitless < most_fruitless) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
-  if (record.station + 1 < stations.size()) return move_step();
+  if (record.station + 1 < stations.size()) {
+    ++record.station;
+    record.passes_here = 0;
+    record.fruitless = 0;
+    return move_step();
+  }
   const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
   return step_of(JobAction::stop, now.is_finished ? "finished" : "stuck: nothing more can be dug");
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
-  const bool was_taken = ground.site().updates() > record.site_updates;
-  if (!was_taken) {
-    SiteEvent event;
-    event.scan = *report.scan;
-    event.dug = false;
-    event.time = report.time;
-    event.base = record.base;
-    const auto off = ground.take_in(event);
-    // Of the edge in one dig, and of what a scan's registration leaves (ours).
-    constexpr double reading_sd = 0.012;
-    if (off) {
-      LearntNumber& bias = record.learning.height_bias;
-      bias.learn(bias.mean + *off, reading_sd * reading_sd);
-    }
+  SiteEvent event;
+  event.scan = *report.scan;
+  event.dug = false;
+  event.time = report.time;
+  event.base = record.base;
+  const auto off = ground.take_in(event);
+  // Of the edge in one dig, and of what a scan's registration leaves (ours).
+  constexpr double reading_sd = 0.012;
+  if (off) {
+    LearntNumber& bias = record.learning.height_bias;
+    bias.learn(bias.mean + *off, reading_sd * reading_sd);
   }
+  record.wants_scan = false;
   record.site_updates = ground.site().updates();
+  ground.save(record.site_updates);
   ++record.progress.scans;
 }
 
@@ -184,12 +194,17 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   JobProgress& progress = record.progress;
   const bool finishing = step.what == JobAction::finish;
   ++(finishing ? progress.finishing_passes : progress.digs);
-  if (finishing) ++record.passes_here;
+  if (finishing) {
+    ++record.passes_here;
+    const double lifted = report.payload_mass.value_or(step.predicted.payload_mass);
+    const bool is_fruitless = report.stalled || lifted < least_taken * step.predicted.payload_mass;
+    record.fruitless = is_fruitless ? record.fruitless + 1 : 0;
+  }
   progress.payload_mass += report.payload_mass.value_or(step.predicted.payload_mass);
   if (report.stalled) {
     ++progress.stalls;
     record.deepest_cut = std::max(shallowest_cut, after_stall * record.deepest_cut);
-    record.strength_factor *= stronger;
+    record.wants_scan = true;
   }
   if (step.truck) {
     record.truck_load += report.payload_mass.value_or(step.predicted.payload_mass);
@@ -198,7 +213,7 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
       ++record.trucks;
     }
   }
-  ground.expect({step, report.stalled}, record.learning.height_bias.mean);
+  if (!report.stalled) ground.expect(step, record.learning.height_bias.mean);
 }
 
 void SiteJob::State::end_step(const StepReport& report) {
@@ -206,6 +221,7 @@ void SiteJob::State::end_step(const StepReport& report) {
   if (step.what == JobAction::dig || step.what == JobAction::finish) end_dig(step, report);
   if (step.what == JobAction::move) {
     record.base = report.base.value_or(step.base);
+    record.has_arrived = true;
     ++record.progress.moves;
   }
   if (report.scan) take_scan(report);
@@ -243,6 +259,7 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
   JobRecord& record = state->record;
   record.base = base_at(state->frame, {0.0, 0.0, {}}, state->first, state->settings.site.machine);
   record.site_updates = state->ground.site().updates();
+  state->ground.save(record.site_updates);
   record.first_volume =
       measured(state->map, state->first, state->settings.design.tolerance).left_volume;
   state->save();
@@ -255,7 +272,8 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
   state->record = load_record(folder);
   state->first = load_ground(state->first_file()).terrain;
   state->look_at_design();
-  for (const UnseenDig& dig : state->record.unseen) {
+  state->ground.load(state->record.site_updates);
+  for (const JobStep& dig : state->record.unseen) {
     state->ground.expect(dig, state->record.learning.height_bias.mean);
   }
   return SiteJob(std::move(state));

@@ -23,13 +23,25 @@ constexpr double room_beside = 2.0;  // of a view beside the line [m]
 constexpr double start_step = 0.4;   // between places where digs may begin [m]
 constexpr double least_excess = 0.015;  // of soil that is worth a dig [m]
 constexpr double too_deep_price = 4.0;  // of soil taken below the design, over that of the design
-constexpr double spill_price = 1.0;     // of soil spilled beside design and dump areas, likewise
-constexpr std::size_t most_confirmed = 8;                      // digs whose ground is looked at
-const std::array<double, 3> cut_depths = {0.12, 0.22, 0.35};   // [m]
-const std::array<double, 3> bulk_angles = {0.5, 0.9, 1.25};    // of penetration [rad]
-const std::array<double, 3> finish_angles = {0.25, 0.4, 0.6};  // likewise
-const std::array<double, 2> fills = {0.95,
-                                     1.25};  // soil in the way of the bucket, over its capacity
+constexpr double spill_price = 2.0;     // of soil spilled beside design and dump areas, likewise
+constexpr std::size_t most_confirmed = 8;  // digs whose ground is looked at
+constexpr double level_from = 0.2;  // before the start of a dig, the ground whose level counts [m]
+constexpr double level_to = 1.2;    // likewise [m]
+const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
+                                          0.22, 0.32, 0.45};  // of the layer of a drag [m]
+constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
+constexpr double shortest_drag = 0.2;                         // [m]
+/// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
+/// with the arm.
+struct Attitude {
+  double angle;
+  bool is_kept;
+};
+const std::array<Attitude, 5> attitudes = {
+    {{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}, {1.1, false}}};
+const std::array<double, 3> finish_angles = {0.15, 0.3, 0.5};  // likewise
+const std::array<double, 2> fills = {0.9,
+                                     1.15};  // soil in the way of the bucket, over its capacity
 
 /// A dig that is laid out.
 struct Candidate {
@@ -46,6 +58,8 @@ class StepSearch {
         machine_(task.settings.site.machine),
         simulator_(machine_, with_strength(task.settings.site.soil, task.strength_factor),
                    task.density_percent),
+        hard_(machine_, with_strength(task.settings.site.soil, task.hard_factor),
+              task.density_percent),
         capacity_(heaped_capacity(machine_)) {
     for (const double lane : task.lanes) {
       views_.emplace_back(task.ground, task.map, dig_line(task.base, 0.0, lane), extent(),
@@ -61,8 +75,9 @@ class StepSearch {
     std::optional<StepDig> best;
     std::size_t confirmed = 0;
     for (const Candidate& candidate : candidates_) {
-      if (confirmed++ == most_confirmed || !(candidate.worth > 0.0)) break;
+      if (confirmed == most_confirmed || !(candidate.worth > 0.0)) break;
       auto dig = confirm(candidate);
+      if (dig) ++confirmed;
       if (dig && (!best || dig->worth > best->worth)) best = std::move(dig);
     }
     return best;
@@ -81,28 +96,74 @@ class StepSearch {
     const LaneView& view = views_[lane];
     DigPathOptions rules;
     rules.floor = view.floor(task_.allowance);
-    rules.drag_keeps_angle = task_.finishing;
+    rules.penetration_clearance = heel_clearance;
     const GroundProfile ground = view.profile();
     for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
-      const double height = ground(start) - rules.floor(start);
-      if (std::isnan(height) || !is_worth_a_dig(view, start)) continue;
+      if (std::isnan(ground(start) - rules.floor(start)) || !is_worth_a_dig(view, start)) continue;
       if (task_.finishing) {
+        rules.drag_keeps_angle = true;
         for (const double angle : finish_angles) {
-          add(lane, {angle, 1.0, start - task_.near}, start, rules);
+          const double down = std::max(0.0, ground(start) - rules.floor(start));
+          const double drag = start - down / std::tan(angle) - nearest(angle);
+          if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
         }
         continue;
       }
+      const double level = mean_ground(view, start - level_to, start - level_from);
+      if (std::isnan(level)) continue;
       for (const double cut : cut_depths) {
-        const double depth = std::min({cut, task_.deepest_cut, std::max(height, 0.02)});
-        for (const double angle : bulk_angles) {
-          for (const double fill : fills) {
-            const double drag = drag_that_fills(view, start - depth / std::tan(angle), depth, fill);
-            add(lane, {angle, depth / std::sin(angle), drag}, start, rules);
-          }
+        if (cut > task_.deepest_cut) break;
+        const double depth = std::max(ground(start) - level, 0.0) + cut;
+        for (const Attitude& attitude : attitudes) {
+          rules.drag_keeps_angle = attitude.is_kept;
+          lay_out_layer(lane, start, {attitude.angle, depth, cut}, rules);
         }
-        if (depth < cut) break;  // the floor; the next would be the same
+        if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
       }
     }
+  }
+
+  /// A penetration, and how thick a layer the drag takes.
+  struct Layer {
+    double angle;
+    double depth;  ///< [m]
+    double cut;    ///< [m]
+  };
+
+  void lay_out_layer(std::size_t lane, double start, const Layer& layer,
+                     const DigPathOptions& rules) {
+    double last = 0.0;
+    const double from = start - layer.depth / std::tan(layer.angle);
+    const double longest = from - nearest(layer.angle);
+    if (!(longest > shortest_drag)) return;
+    for (const double fill : fills) {
+      const double drag = std::min(drag_that_fills(views_[lane], from, layer.cut, fill), longest);
+      if (drag == last) break;
+      add(lane, {layer.angle, layer.depth / std::sin(layer.angle), drag}, start, rules);
+      last = drag;
+    }
+  }
+
+  /// Where a drag with this floor angle may end: as the bucket curls, its tip comes nearer to the
+  /// tracks.
+  double nearest(double angle) const {
+    const double attitude = angle + heel_clearance + machine_.beta();
+    const double curls = machine_.bucket_length * (1.0 - std::cos(attitude));
+    constexpr double rounded = 0.02;  // away from the limit [m]
+    return std::max(task_.near,
+                    machine_.track_front + DigPathOptions{}.track_margin + curls + rounded);
+  }
+
+  /// Of a part of a lane; NaN if none of it is known.
+  static double mean_ground(const LaneView& view, double from, double to) {
+    double sum = 0.0;
+    int known = 0;
+    for (Index col = 0; col < view.columns(); ++col) {
+      if (view.x(col) < from || view.x(col) > to || std::isnan(view.ground_at(col))) continue;
+      sum += view.ground_at(col);
+      ++known;
+    }
+    return known > 0 ? sum / known : std::nan("");
   }
 
   bool is_worth_a_dig(const LaneView& view, double start) const {
@@ -125,7 +186,7 @@ class StepSearch {
       met += cell * std::min(depth, view.excess(col, task_.allowance));
       x -= cell;
     }
-    return std::max(0.2, from - x);
+    return std::max(shortest_drag, from - x);
   }
 
   void add(std::size_t lane, const DigParameters& parameters, double start,
@@ -155,7 +216,12 @@ class StepSearch {
 
   std::optional<StepDig> confirm(const Candidate& candidate) const {
     const LaneView& view = views_[candidate.lane];
-    auto dug = dig_to_rest(machine_, simulator_, view.ground().terrain(), candidate.path, cycle());
+    const Terrain& ground = view.ground().terrain();
+    if (!std::holds_alternative<PlannedDig>(
+            dig_of_path(machine_, hard_, ground, candidate.path, cycle()))) {
+      return std::nullopt;
+    }
+    auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle());
     auto* found = std::get_if<SimulatedDig>(&dug);
     if (found == nullptr) return std::nullopt;
     StepDig step;
@@ -174,6 +240,7 @@ class StepSearch {
   const StepTask& task_;
   const Machine& machine_;
   HeightMapSimulator simulator_;
+  HeightMapSimulator hard_;
   double capacity_;
   std::vector<LaneView> views_;
   std::vector<Candidate> candidates_;

@@ -30,6 +30,7 @@ struct StepTask {
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
   double density_percent = 50.0;  ///< of the bank, as believed
   double strength_factor = 1.0;   ///< on the soil's strength, as believed
+  double hard_factor = 1.0;       ///< likewise, at which no dig may stall
   double deepest_cut = 0.5;       ///< of one dig below the ground [m]
 };
 

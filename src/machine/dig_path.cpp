@@ -89,6 +89,8 @@ void check(const DigPathOptions& options) {
           "finite");
   require(std::abs(options.drag_grade) <= 1.0, "DigPathOptions::drag_grade", options.drag_grade,
           "in -1 .. 1 rad");
+  require(options.penetration_clearance >= 0.0 && options.penetration_clearance <= 1.0,
+          "DigPathOptions::penetration_clearance", options.penetration_clearance, "in 0 .. 1 rad");
   require(options.lift_clearance >= 0.0 && std::isfinite(options.lift_clearance),
           "DigPathOptions::lift_clearance", options.lift_clearance, "at least 0 m and finite");
 }
@@ -315,7 +317,8 @@ std::optional<Infeasible> Layout::penetrate() {
     const double s = count > 0 ? length * i / count : 0.0;
     DigPose pose;
     pose.phase = first_phase();
-    pose.bucket = {path_.start_x - s * inwards, first_z_ - s * down, angle};
+    pose.bucket = {path_.start_x - s * inwards, first_z_ - s * down,
+                   angle + options_.penetration_clearance};
     const auto joints = inverse_kinematics(machine_, pose.bucket);
     if (const auto* failed = std::get_if<Unreachable>(&joints)) {
       return stop(pose.phase, s, *failed);

@@ -55,10 +55,18 @@ class Places {
   }
 
   bool is_known() const { return 2 * count_ > known_.size(); }
+  /// Within the values that it is the mean of, rounding included.
   double mean(const ArrayXXd& layer) const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < count_; ++i) sum += layer(known_[i].row, known_[i].col);
-    return sum / static_cast<double>(count_);
+    double least = layer(known_[0].row, known_[0].col);
+    double most = least;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double value = layer(known_[i].row, known_[i].col);
+      sum += value;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    return std::clamp(sum / static_cast<double>(count_), least, most);
   }
 
  private:
@@ -238,7 +246,8 @@ class Entry {
       double& loose = patch.loose(at.row, at.col);
       loose = kept * (keeps_voids ? cell.pressed_to : 1.0) + gained * (1.0 + voids_.loose);
       if (keeps_voids && solids + gained > 0.0) {
-        patch.loose_void_ratio(at.row, at.col) = loose / (solids + gained) - 1.0;
+        patch.loose_void_ratio(at.row, at.col) =
+            std::min(loose / (solids + gained) - 1.0, std::max(voids, voids_.loose));
       }
     });
     return patch;
