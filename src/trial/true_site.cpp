@@ -26,7 +26,6 @@ namespace {
 using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
-constexpr double first_time = 1767225600.0;  // 2026-01-01; ours [s]
 
 constexpr double spare_reach = 0.3;          // for what a move landed off; ours [m]
 
@@ -172,7 +171,7 @@ struct TrueSite::State {
   double density = 0.0;
   std::unique_ptr<const SoilSimulator> simulator;
   BasePose known, real;
-  double time = first_time;
+  double time = trial_begin;
   std::uint64_t step = 0;   ///< steps done
   std::uint64_t scans = 0;  ///< made
   SolidsLedger solids;

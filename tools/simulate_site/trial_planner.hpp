@@ -10,6 +10,7 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
+
 namespace excavplan::tools {
 
 /// All planners, the first is the default.

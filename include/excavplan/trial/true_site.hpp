@@ -16,6 +16,9 @@
 
 namespace excavplan {
 
+/// When trials begin, 2026-01-01, since 1970-01-01 UTC; ours [s].
+inline constexpr double trial_begin = 1767225600.0;
+
 /// What a move costs; ours, as a machine of 12 t on its tracks: 2 km/h, and a third of its weight
 /// as rolling resistance.
 struct MoveCost {
