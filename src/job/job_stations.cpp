@@ -15,6 +15,7 @@ constexpr double end_wall =
     1.6;                         // from the nearest work to the far end: steep cuts need weight [m]
 constexpr double overlap = 0.4;  // of what is dug from two places in succession [m]
 constexpr double side_margin = 0.03;  // to the sides of the design, as no machine is exact [m]
+constexpr double end_margin = 0.06;   // to the ends of the design, likewise [m]
 constexpr double lane_overlap = 0.1;  // of two lanes [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
@@ -48,8 +49,8 @@ double farthest_of(const Machine& machine) {
 }  // namespace
 
 WorkRange work_range(const JobFrame& frame, const Machine& machine, double along) {
-  return {std::max(nearest_of(machine), frame.near - along),
-          std::min(farthest_of(machine), frame.far - along)};
+  return {std::max(nearest_of(machine), frame.near + end_margin - along),
+          std::min(farthest_of(machine), frame.far - end_margin - along)};
 }
 
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {

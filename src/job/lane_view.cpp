@@ -102,7 +102,7 @@ double LaneView::excess(Index col, double allowance) const {
   return sum / static_cast<double>(end_row_ - first_row_);
 }
 
-ShapeChange LaneView::change(const TerrainPatch& patch) const {
+ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
   const double area = surface_.cell_size * surface_.cell_size;
   ShapeChange change;
   for_each_cell(patch.bank, [&](Cell at) {
@@ -118,7 +118,8 @@ ShapeChange LaneView::change(const TerrainPatch& patch) const {
       return;
     }
     change.gained += area * (std::max(0.0, before - target) - std::max(0.0, after - target));
-    change.too_deep += area * (std::max(0.0, target - after) - std::max(0.0, target - before));
+    change.too_deep +=
+        area * (std::max(0.0, target - slack - after) - std::max(0.0, target - slack - before));
   });
   return change;
 }

@@ -42,7 +42,8 @@ class LaneView {
   /// Largest height of a cell that counts over the design under the bucket [m]; 0: none.
   double highest_error(Eigen::Index col) const { return highest_error_(col); }
 
-  ShapeChange change(const TerrainPatch& patch) const;
+  /// @param slack  so far below the design ground does not count [m]
+  ShapeChange change(const TerrainPatch& patch, double slack) const;
 
  private:
   void look_under_bucket(double bucket_width);

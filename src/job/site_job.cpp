@@ -24,10 +24,12 @@ namespace {
 constexpr std::size_t most_unseen = 5;   // digs between two scans
 constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
 constexpr double least_shaped = 0.004;   // of a finishing pass [m^3]
-constexpr double bulk_allowance = 0.5;   // over the design, in tolerances
+constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
 constexpr int most_passes = 24;          // along the floor from one station
 constexpr int most_fruitless = 2;        // passes in succession that took nothing off
 constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
+constexpr double high_share = 0.8;       // of the tolerance: higher cells call for a pass
+constexpr double most_high = 0.02;       // share of cells that may stay so
 constexpr double least_seen = 0.99;      // of a finished design
 constexpr double after_stall = 0.7;      // of the depth of a cut
 constexpr double shallowest_cut = 0.06;  // [m]
@@ -81,6 +83,7 @@ struct SiteJob::State {
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
   JobStep move_step();
+  bool wants_passes() const;
   JobStep step_of(JobAction what, const std::string& reason = {});
   void end_step(const StepReport& report);
   void end_dig(const JobStep& step, const StepReport& report);
@@ -111,10 +114,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   const Machine& machine = settings.site.machine;
   const Terrain& now = ground.expected();
   const auto dump = dump_place(settings, map, now, record.base);
-  if (!dump) {
-    fprintf(stderr, "no dump place\n");
-    return std::nullopt;
-  }
+  if (!dump) return std::nullopt;
   BasePose straight = record.base;
   straight.heading = frame.heading;
   const Eigen::Vector2d at = frame.of({straight.x, straight.y});
@@ -128,6 +128,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
+  task.slack = 0.5 * settings.design.tolerance;
   auto dig = best_dig(task);
   if (!dig) return std::nullopt;
 
@@ -150,6 +151,28 @@ JobStep SiteJob::State::move_step() {
   return step;
 }
 
+/// Whether too much of what is within reach lies above the design.
+bool SiteJob::State::wants_passes() const {
+  const Eigen::Vector2d at = frame.of({record.base.x, record.base.y});
+  const WorkRange range = work_range(frame, settings.site.machine, at.x());
+  const std::vector<double>& lanes = stations[record.station].lanes;
+  const double half = 0.5 * settings.site.machine.bucket.width_outside;
+  const Terrain& now = ground.expected();
+  int count = 0;
+  int high = 0;
+  for_each_cell(map.counts, [&](Cell cell) {
+    if (!map.counts(cell.row, cell.col)) return;
+    const Eigen::Vector2d place = frame.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
+    if (place.x() < range.near || place.x() > range.far) return;
+    if (place.y() < lanes.front() - at.y() - half || place.y() > lanes.back() - at.y() + half)
+      return;
+    const double surface = now.bank.z(cell.row, cell.col) + now.loose(cell.row, cell.col);
+    ++count;
+    if (surface - map.target.z(cell.row, cell.col) > high_share * settings.design.tolerance) ++high;
+  });
+  return high > most_high * count;
+}
+
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) return move_step();
   const bool is_fresh = ground.unseen().empty();
@@ -157,7 +180,7 @@ JobStep SiteJob::State::decide() {
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   if (auto step = dig_step(false)) return *std::move(step);
   if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
-  if (record.passes_here < most_passes && record.fruitless < most_fruitless) {
+  if (record.passes_here < most_passes && record.fruitless < most_fruitless && wants_passes()) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
   if (record.station + 1 < stations.size()) {

@@ -229,7 +229,7 @@ class StepSearch {
     step.path = candidate.path;
     step.dig = found->dig;
     step.result = std::move(found->result);
-    step.change = view.change(step.result.patch);
+    step.change = view.change(step.result.patch, task_.slack);
     const double gain = step.change.gained - too_deep_price * step.change.too_deep -
                         spill_price * step.change.spilled;
     if (!(gain > 0.0)) return std::nullopt;

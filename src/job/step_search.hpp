@@ -26,6 +26,7 @@ struct StepTask {
   std::vector<double> lanes;      ///< beside the swing axis [m]
   double near = 0.0;              ///< from the swing axis to the nearest part of the work [m]
   double far = 0.0;               ///< to the farthest [m]
+  double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
   bool finishing = false;         ///< along the floor, for its shape
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
   double density_percent = 50.0;  ///< of the bank, as believed
