@@ -34,7 +34,6 @@ bool is_well_in(const SitePolygon& area, const Eigen::Vector2d& at, double margi
   return true;
 }
 
-
 }  // namespace
 
 double pin_reach(const Machine& machine, double height) {

@@ -22,19 +22,21 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double penetration = 0.25 * pi;         // of a layer [rad]
-constexpr double finishing_penetration = 0.35;    // of a pass along the floor [rad]
-constexpr double least_layer = 0.04;              // [m]
-constexpr double beside = 0.04;                   // of the bucket, for the cells of a wall [m]
-constexpr double scratch = 0.02;                  // beside the design [m]
-constexpr int evaluations = 200;                  // of the one search of "greedy"
-constexpr double sample = 0.05;                   // along a lane and over it [m]
+constexpr double penetration = 0.25 * pi;       // of a layer [rad]
+constexpr double finishing_penetration = 0.35;  // of a pass along the floor [rad]
+constexpr double least_layer = 0.04;            // [m]
+constexpr double beside = 0.04;                 // of the bucket, for the cells of a wall [m]
+constexpr double scratch = 0.02;                // beside the design [m]
+constexpr int evaluations = 200;                // of the one search of "greedy"
+constexpr double sample = 0.05;                 // along a lane and over it [m]
 
 /// Along the line of the design and to its left.
 class Axis {
  public:
   explicit Axis(const DesignWords& words)
-      : from_(words.from), heading_(words.heading), ahead_(std::cos(heading_), std::sin(heading_)) {}
+      : from_(words.from),
+        heading_(words.heading),
+        ahead_(std::cos(heading_), std::sin(heading_)) {}
   double heading() const { return heading_; }
   double along(double x, double y) const { return (Vector2d(x, y) - from_).dot(ahead_); }
   double left(double x, double y) const {
@@ -301,8 +303,8 @@ class PlainPlanner : public JobPlanner {
     rules.drag_keeps_angle = true;
     const double start = start_over(least_height_, lane);
     const double along = base_along() + start;
-    const double over = std::clamp(ground_at(along, lane.left) - floor_at(along, lane.left), 0.0,
-                                   policy_.layer);
+    const double over =
+        std::clamp(ground_at(along, lane.left) - floor_at(along, lane.left), 0.0, policy_.layer);
     DigParameters numbers;
     numbers.penetration_angle = finishing_penetration;
     numbers.penetration_length = (over + 0.02) / std::sin(finishing_penetration);
@@ -344,9 +346,7 @@ class PlainPlanner : public JobPlanner {
   /// From the far end of the station, or as near to it as the machine can.
   std::optional<DigPath> path_of(const DigParameters& numbers, double start, const Lane& lane,
                                  const DigPathOptions& rules) const {
-    const auto ground = [&](double x) {
-      return ground_at(base_along() + x, lane.left) - base_.z;
-    };
+    const auto ground = [&](double x) { return ground_at(base_along() + x, lane.left) - base_.z; };
     for (double x = start; x > start - 1.2; x -= 0.1) {
       DigParameters tried = numbers;
       tried.drag_length = std::max(0.0, numbers.drag_length - (start - x));

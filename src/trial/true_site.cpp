@@ -8,6 +8,7 @@
 #include <excavplan/base/error.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/trial/job_score.hpp>
 #include <excavplan/trial/site_scan.hpp>
 
 #include "base/angles.hpp"
@@ -17,7 +18,6 @@
 #include "ground/grid_cells.hpp"
 #include "trial/dump_places.hpp"
 #include "trial/plan_polygon.hpp"
-#include "trial/scored_design.hpp"
 #include "trial/tracked_path.hpp"
 
 namespace excavplan {
@@ -26,8 +26,7 @@ namespace {
 using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
-
-constexpr double spare_reach = 0.3;          // for what a move landed off; ours [m]
+constexpr double spare_reach = 0.3;  // for what a move landed off; ours [m]
 
 // Streams of a step.
 constexpr std::uint64_t tracking_stream = 1;
@@ -96,7 +95,7 @@ CycleShare cycle_cost(const Machine& machine, const DigPath& path, const DigResu
 struct TrueSite::State {
   State(const HiddenSite& of, const Machine& digger, const TruthOptions& how)
       : site(of), machine(digger), options(how), ground(of.ground) {
-    density = site.mean_density();
+    density = mean_density(site);
     simulator = options.simulator.make(machine, site.soil, density);
     seen_height = ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
                                      std::numeric_limits<double>::quiet_NaN());
@@ -124,8 +123,8 @@ struct TrueSite::State {
         const double along = front * (2.0 * i / (places - 1) - 1.0);
         const double left = half * (2.0 * k / (places - 1) - 1.0);
         const double c = std::cos(base.heading), s = std::sin(base.heading);
-        const double z = height_at(surface, base.x + c * along - s * left,
-                                   base.y + s * along + c * left);
+        const double z =
+            height_at(surface, base.x + c * along - s * left, base.y + s * along + c * left);
         if (std::isnan(z)) continue;
         sum += z;
         ++count;
@@ -175,7 +174,7 @@ struct TrueSite::State {
   std::uint64_t step = 0;   ///< steps done
   std::uint64_t scans = 0;  ///< made
   SolidsLedger solids;
-  ArrayXXd seen_height;     ///< of the true surface when a cell was last seen; NaN: never [m]
+  ArrayXXd seen_height;  ///< of the true surface when a cell was last seen; NaN: never [m]
 };
 
 TrueStep TrueSite::State::dig(const JobStep& job) {
@@ -187,8 +186,8 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   const PoseError error = {known, real};
   DigLine line = dig_line(job.base, job.swung, job.lane);
   line.heading += real.heading - known.heading;
-  line.origin = error.moved(line.origin) +
-                aside * Vector2d(-std::sin(line.heading), std::cos(line.heading));
+  line.origin =
+      error.moved(line.origin) + aside * Vector2d(-std::sin(line.heading), std::cos(line.heading));
   line.z = real.z;
   const HeightMap surface = ground.surface();
   const DigPath path = tracked_path(machine, job.path, shift, [&](double x) {
@@ -196,8 +195,8 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
     return height_at(surface, at.x(), at.y()) - line.z;
   });
   const Terrain before = ground;
-  const DigResult dug = dig_along(*simulator, machine, ground, line,
-                                  soil_voids(site.soil, density), path);
+  const DigResult dug =
+      dig_along(*simulator, machine, ground, line, soil_voids(site.soil, density), path);
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
   require_reach(job, dump_at);
@@ -261,8 +260,8 @@ TrueStep TrueSite::State::move(const JobStep& job) {
 Scan TrueSite::State::scan() {
   const std::uint64_t seed = Random(options.seed, scan_stream, scans++).bits();
   const HeightMap surface = ground.surface();
-  Scan scan = scan_site(with_obstacles(surface, site.known.job.obstacles), site.known.sensor, real,
-                        seed);
+  Scan scan =
+      scan_site(with_obstacles(surface, site.known.job.obstacles), site.known.sensor, real, seed);
   scan.name = "scan " + std::to_string(scans);
   const HeightMap& cells = site.first_scan;
   for (const auto& cloud : scan.clouds) {
@@ -286,15 +285,24 @@ TrueStep TrueSite::execute(const JobStep& step) {
   try {
     switch (step.what) {
       case JobAction::dig:
-      case JobAction::finish: done = state_->dig(step); break;
-      case JobAction::move: done = state_->move(step); break;
-      case JobAction::scan: state_->take_scan(done); break;
-      case JobAction::wait: done.time = state_->options.wait_time; break;
-      case JobAction::stop: break;
+      case JobAction::finish:
+        done = state_->dig(step);
+        break;
+      case JobAction::move:
+        done = state_->move(step);
+        break;
+      case JobAction::scan:
+        state_->take_scan(done);
+        break;
+      case JobAction::wait:
+        done.time = state_->options.wait_time;
+        break;
+      case JobAction::stop:
+        break;
     }
   } catch (const Error& error) {
-    throw Error(error.kind(), "step " + std::to_string(step.id) + " (" + name(step.what) +
-                                  "): " + error.what());
+    throw Error(error.kind(),
+                "step " + std::to_string(step.id) + " (" + name(step.what) + "): " + error.what());
   }
   state_->time += done.time;
   done.report.time = state_->time;

@@ -65,7 +65,7 @@ TEST(HiddenSite, TheBankHasTheVoidRatioOfItsPlace) {
   };
   EXPECT_NEAR(density(-3.0), 20.0, 1e-9);
   EXPECT_NEAR(density(6.0), 80.0, 1e-9);
-  EXPECT_GT(site.mean_density(), 70.0);
+  EXPECT_GT(mean_density(site), 70.0);
 }
 
 TEST(HiddenSite, TheFootprintIsWhereTheDesignLiesBelowTheGround) {

@@ -85,9 +85,8 @@ TEST(JobScore, SoilBesideTheDumpAreasIsSpilled) {
   trench.set(all_of_it, -0.4).set({2.0, 2.0, 6.0, 2.5}, 0.9).set({2.0, -1.5, 6.0, -1.0}, 0.1);
   EXPECT_NEAR(score_job(site, trench.ground, 1.0).spill_percent(), 10.0, 1e-6);
   folder.site["dump_areas"] = nlohmann::json::array();
-  folder.site["truck"] = {{"bed_polygon", {{2, 2}, {6, 2}, {6, 4}}},
-                          {"bed_height_m", 2.4},
-                          {"target_kg", 4000}};
+  folder.site["truck"] = {
+      {"bed_polygon", {{2, 2}, {6, 2}, {6, 4}}}, {"bed_height_m", 2.4}, {"target_kg", 4000}};
   const HiddenSite by_truck = folder.read();
   Trench hauled(by_truck);
   hauled.set(all_of_it, -0.4).set({2.0, -1.5, 6.0, -1.0}, 0.1);
@@ -123,8 +122,9 @@ TEST(JobScore, SteepFacesDoNotCount) {
 
 TEST(JobScore, AnotherGridIsRefused) {
   const HiddenSite site = PlainSiteFolder().read();
-  EXPECT_NE(error_of([&] { score_job(site, flat_ground({0, 0, 1, 1}, 0.05), 1.0); })
-                .find("not on the grid"),
+  EXPECT_NE(error_of([&] {
+              score_job(site, flat_ground({0, 0, 1, 1}, 0.05), 1.0);
+            }).find("not on the grid"),
             std::string::npos);
 }
 

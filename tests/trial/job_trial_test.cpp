@@ -35,8 +35,7 @@ TEST(JobTrial, ThePlainPolicyDigsMostOfATrench) {
   EXPECT_GT(trial.digs, 5);
   EXPECT_GT(trial.finishing, 0);
   EXPECT_GE(trial.scans, 2);
-  EXPECT_NEAR(trial.solids.cut, trial.solids.lying + trial.solids.hauled,
-              1e-9 * trial.solids.cut);
+  EXPECT_NEAR(trial.solids.cut, trial.solids.lying + trial.solids.hauled, 1e-9 * trial.solids.cut);
   EXPECT_GT(trial.energy_per_design(), 300e3);
 }
 

@@ -15,8 +15,8 @@ JobStep dig_step(double x = 5.5) {
   JobStep step;
   step.id = 7;
   step.what = JobAction::dig;
-  step.path = std::get<DigPath>(
-      make_dig_path(zx120(), {0.785, 0.3, 1.5}, x, [](double) { return 0.0; }));
+  step.path =
+      std::get<DigPath>(make_dig_path(zx120(), {0.785, 0.3, 1.5}, x, [](double) { return 0.0; }));
   step.dump = {2.5, 3.5, 2.0};
   return step;
 }

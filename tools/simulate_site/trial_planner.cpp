@@ -7,6 +7,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/job/site_job.hpp>
+#include <excavplan/trial/job_score.hpp>
 #include <excavplan/trial/plain_planners.hpp>
 #include <excavplan/trial/true_site.hpp>
 
@@ -81,7 +82,7 @@ std::unique_ptr<JobPlanner> planner_of(const std::string& word, const HiddenSite
   }
   const bool knows = word == "known";
   JobSettings settings = settings_of(site.known, knows ? site.soil : site.known.soil, machine);
-  if (knows) settings.density_percent = site.mean_density();
+  if (knows) settings.density_percent = mean_density(site);
   return std::make_unique<OwnPlanner>(settings, first_scan(site.known));
 }
 

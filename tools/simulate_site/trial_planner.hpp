@@ -10,7 +10,6 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
-
 namespace excavplan::tools {
 
 /// All planners, the first is the default.

@@ -34,8 +34,8 @@ struct TruthOptions {
   std::uint64_t seed = 1;                         ///< of all draws
   bool scans_each_dig = false;                    ///< a scan is made after each dig as well
   MoveCost move = {};
-  double scan_time = 3.0;  ///< [s]
-  double wait_time = 60.0; ///< of JobAction::wait; ours [s]
+  double scan_time = 3.0;   ///< [s]
+  double wait_time = 60.0;  ///< of JobAction::wait; ours [s]
 };
 
 /// What a step did, and cost.
@@ -58,11 +58,11 @@ struct SolidsLedger {
 /// The true ground and the machine on it.
 ///
 /// A dig: the tracking errors shift its path, and the joints follow by inverse kinematics in the
-/// plane of the path; also in a lane, whose front reaches a little farther. The bucket turns as much
-/// as keeps its heel off the ground. The machine digs until it has finished or
-/// stalls; what is then in the bucket is dumped. Where the bank was cut its void ratios are set
-/// anew (set_void_ratios()). The line of a dig and the dump are off as the known pose of the
-/// machine is. Tracks leave no mark, and the ground holds the machine everywhere.
+/// plane of the path; also in a lane, whose front reaches a little farther. The bucket turns as
+/// much as keeps its heel off the ground. The machine digs until it has finished or stalls; what is
+/// then in the bucket is dumped. Where the bank was cut its void ratios are set anew
+/// (set_void_ratios()). The line of a dig and the dump are off as the known pose of the machine is.
+/// Tracks leave no mark, and the ground holds the machine everywhere.
 class TrueSite {
  public:
   /// @throws Error (bad_input) as require_machine() and SimulatorKind::make()
