@@ -69,6 +69,7 @@ DumpPlace DumpPlaces::from(const BasePose& base, double heading, const SeenGroun
         if (cost >= least) continue;
         least = cost;
         best.pin = {x, y, pin};
+        best.in_reach = beyond == 0.0;
         best.truck = bed ? std::optional<int>(truck_) : std::nullopt;
       }
     }

@@ -224,6 +224,8 @@ class PlainPlanner : public JobPlanner {
       const double off = std::hypot(base_along() - first_station(), axis_.left(base_.x, base_.y));
       if (off > 0.3) return move_to(first_station());
     }
+    dump_ = dumps_.from(base_, axis_.heading(), ground_);
+    if (!dump_.in_reach) phase_ = Phase::leave;
     while (phase_ != Phase::leave) {
       if (at_ >= lanes_.size()) {
         if (must_scan_) return scan();
@@ -361,9 +363,8 @@ class PlainPlanner : public JobPlanner {
     step.swung = std::remainder(axis_.heading() - base_.heading, 2.0 * pi);
     step.lane = lane.left - axis_.left(base_.x, base_.y);
     step.path = path;
-    const DumpPlace place = dumps_.from(base_, axis_.heading(), ground_);
-    step.dump = place.pin;
-    step.truck = place.truck;
+    step.dump = dump_.pin;
+    step.truck = dump_.truck;
     return step;
   }
 
@@ -390,6 +391,7 @@ class PlainPlanner : public JobPlanner {
   SeenGround ground_;
   HeightMap design_;  ///< NaN where nothing is to be dug
   DumpPlaces dumps_;
+  DumpPlace dump_;  ///< of the present step
   BasePose base_;
   DigParameters numbers_ = paper_fixed_path();
   double least_height_ = 1e9;  ///< of the design [m]
