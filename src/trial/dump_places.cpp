@@ -34,7 +34,6 @@ bool is_well_in(const SitePolygon& area, const Eigen::Vector2d& at, double margi
   return true;
 }
 
-
 }  // namespace
 
 double pin_reach(const Machine& machine, double height) {
@@ -70,6 +69,7 @@ DumpPlace DumpPlaces::from(const BasePose& base, double heading, const SeenGroun
         if (cost >= least) continue;
         least = cost;
         best.pin = {x, y, pin};
+        best.in_reach = beyond == 0.0;
         best.truck = bed ? std::optional<int>(truck_) : std::nullopt;
       }
     }

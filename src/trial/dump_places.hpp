@@ -17,6 +17,7 @@ namespace excavplan {
 struct DumpPlace {
   Eigen::Vector3d pin;       ///< of the bucket, in the site [m]
   std::optional<int> truck;  ///< from 1
+  bool in_reach = false;
 };
 
 /// Chooses the place of least swing in the dump areas or the truck of a job; fills one truck after

@@ -15,7 +15,6 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "ground/grid_cells.hpp"
-#include "trial/scored_design.hpp"
 
 namespace excavplan {
 namespace {
@@ -31,8 +30,8 @@ JsonObject opened(const std::string& path) {
 /// keeps its relative density.
 SoilKind nominal_soil(JsonObject site) {
   SoilKind soil = load_soil(shipped_or_file("soils", site.text("name")));
-  const double looseness = (soil.void_ratio_max - soil.void_ratio_loose) /
-                           (soil.void_ratio_max - soil.void_ratio_min);
+  const double looseness =
+      (soil.void_ratio_max - soil.void_ratio_loose) / (soil.void_ratio_max - soil.void_ratio_min);
   const bool own_voids = site.states("e_max") || site.states("e_min");
   soil.specific_gravity = site.number_or("specific_gravity", soil.specific_gravity, 0.5, 10.0);
   soil.water_content = site.number_or("water", soil.water_content, 0.0, 10.0);
@@ -172,33 +171,20 @@ HiddenSite read_hidden_site(const std::string& folder, double cell_size) {
   errors.height_bias = truth.number_or("tracking_height_bias_m", 0.0, -1.0, 1.0);
   errors.height_sd = truth.number_or("tracking_height_sd_m", errors.height_sd, 0.0, 1.0);
   errors.side_sd = truth.number_or("tracking_side_sd_m", errors.side_sd, 0.0, 1.0);
-  site.soil = true_soil(
-      site.known.soil, truth.number_or("strength_factor", 1.0, 0.01, 100.0),
-      truth.number_or("water_content_true", site.known.soil.water_content, 0.0, 10.0));
+  site.soil =
+      true_soil(site.known.soil, truth.number_or("strength_factor", 1.0, 0.01, 100.0),
+                truth.number_or("water_content_true", site.known.soil.water_content, 0.0, 10.0));
   site.ground = undisturbed(refined(ground, cell_size));
   const Eigen::ArrayXXd known = site.ground.bank.z.isNaN().cast<double>();
   for_each_cell(known, [&](Cell at) {
-    const double d = height_at(site.density.percent, site.ground.bank.x(at.col),
-                               site.ground.bank.y(at.row));
+    const double d =
+        height_at(site.density.percent, site.ground.bank.x(at.col), site.ground.bank.y(at.row));
     if (known(at.row, at.col) > 0.0 || std::isfinite(d)) return;
     throw Error(ErrorKind::bad_file,
                 folder + "/hidden/density.asc: does not cover all of hidden/ground.asc");
   });
   set_void_ratios(site.density, site.soil, site.ground);
   return site;
-}
-
-double HiddenSite::mean_density() const {
-  const ScoredDesign scored = scored_design(known, ground.surface());
-  double sum = 0.0, volume = 0.0;
-  for_each_cell(scored.height.z, [&](Cell at) {
-    const double floor = scored.height.z(at.row, at.col), top = ground.bank.z(at.row, at.col);
-    if (std::isnan(floor) || !(top > floor)) return;
-    const double middle = 0.5 * (floor + top);
-    sum += (top - floor) * density.at(ground.bank.x(at.col), ground.bank.y(at.row), middle);
-    volume += top - floor;
-  });
-  return volume > 0.0 ? sum / volume : 0.0;
 }
 
 }  // namespace excavplan

@@ -9,6 +9,7 @@
 #include <excavplan/planning/dig_cycle.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/trial/job_score.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
@@ -40,14 +41,13 @@ double rupture(const SoilState& soil, double rake) {
 double windrow_height(const SiteBrief& site, double loose) {
   if (site.job.dump_areas.empty() && site.job.truck) return site.job.truck->bed_height;
   const Rectangle all = extent_of(site.design);
-  const double length = site.job.words
-                            ? site.job.words->length
-                            : std::max(all.x_max - all.x_min, all.y_max - all.y_min);
+  const double length = site.job.words ? site.job.words->length
+                                       : std::max(all.x_max - all.x_min, all.y_max - all.y_min);
   return std::sqrt(loose / length * std::tan(site.soil.angle_of_repose));
 }
 
-/// Positive work of the joints that raise a full bucket, its mouth level, from a depth over a height
-/// in the middle of the reach [J].
+/// Positive work of the joints that raise a full bucket, its mouth level, from a depth over a
+/// height in the middle of the reach [J].
 double lift(const Machine& machine, double payload, double depth, double height) {
   const double reach = 0.6 * machine.full_length();  // ours
   const BucketPose low = {reach, -depth, pi - machine.beta()};
@@ -65,8 +65,8 @@ double lift(const Machine& machine, double payload, double depth, double height)
   return work;
 }
 
-Found<DigSearchResult> best_full_dig(const HiddenSite& site, const Machine& machine,
-                                     double density, const ReferenceOptions& options) {
+Found<DigSearchResult> best_full_dig(const HiddenSite& site, const Machine& machine, double density,
+                                     const ReferenceOptions& options) {
   DigSearchOptions search = budget_search();
   search.objective = DigObjective(DigObjective::Goal::cycle);
   search.objective.swing = swing;
@@ -86,7 +86,7 @@ JobReference job_reference(const HiddenSite& site, const Machine& machine,
   const double cell = site.ground.bank.cell_size;
   const double area = cell * cell * design.share.sum();
   JobReference reference;
-  reference.density_percent = site.mean_density();
+  reference.density_percent = mean_density(site);
   reference.design_cut = design.below(site.ground.bank.z);
   require(area > 0.0, "reference of a job: the design lies nowhere below the ground");
   const SoilState bank = bank_state(site.soil, reference.density_percent);
@@ -107,8 +107,8 @@ JobReference job_reference(const HiddenSite& site, const Machine& machine,
   const double mass = bank_of_load * bank.bulk_density;
   const double height = windrow_height(site.known, reference.swollen);
   const double depth = 0.5 * reference.design_cut / area;
-  double of_load = rupture(bank, machine.bucket.edge_angle) * bank_of_load +
-                   lift(machine, mass, depth, height);
+  double of_load =
+      rupture(bank, machine.bucket.edge_angle) * bank_of_load + lift(machine, mass, depth, height);
   if (best && machine.swing) {
     PlannedDig dig = best->dig;
     dig.payload_mass = mass;

@@ -61,12 +61,26 @@ HeightMap footprint_of(const HiddenSite& site) {
   return scored_design(site.known, site.ground.surface()).height;
 }
 
+double mean_density(const HiddenSite& site) {
+  const HeightMap& bank = site.ground.bank;
+  const ScoredDesign scored = scored_design(site.known, bank);
+  double sum = 0.0, volume = 0.0;
+  for_each_cell(bank.z, [&](Cell at) {
+    const double floor = scored.height.z(at.row, at.col), top = bank.z(at.row, at.col);
+    const double thickness = scored.share(at.row, at.col) * (top - floor);
+    if (!(thickness > 0.0)) return;
+    sum += thickness * site.density.at(bank.x(at.col), bank.y(at.row), 0.5 * (floor + top));
+    volume += thickness;
+  });
+  return share(sum, volume);
+}
+
 JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen) {
   const HeightMap before = site.ground.surface();
-  require(same_grid(before, after), "score of a job: the ground after is not on the grid of before");
+  require(same_grid(before, after),
+          "score of a job: the ground after is not on the grid of before");
   const ScoredDesign design = scored_design(site.known, before);
-  require((design.share > 0.0).any(),
-          "score of a job: the design lies nowhere below the ground");
+  require((design.share > 0.0).any(), "score of a job: the design lies nowhere below the ground");
   const double cell = before.cell_size;
   const ArrayXXd risen = after.z - before.z;
   const ArrayXXd everywhere = ArrayXXd::Ones(risen.rows(), risen.cols());

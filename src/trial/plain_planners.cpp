@@ -22,19 +22,21 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double penetration = 0.25 * pi;         // of a layer [rad]
-constexpr double finishing_penetration = 0.35;    // of a pass along the floor [rad]
-constexpr double least_layer = 0.04;              // [m]
-constexpr double beside = 0.04;                   // of the bucket, for the cells of a wall [m]
-constexpr double scratch = 0.02;                  // beside the design [m]
-constexpr int evaluations = 200;                  // of the one search of "greedy"
-constexpr double sample = 0.05;                   // along a lane and over it [m]
+constexpr double penetration = 0.25 * pi;       // of a layer [rad]
+constexpr double finishing_penetration = 0.35;  // of a pass along the floor [rad]
+constexpr double least_layer = 0.04;            // [m]
+constexpr double beside = 0.04;                 // of the bucket, for the cells of a wall [m]
+constexpr double scratch = 0.02;                // beside the design [m]
+constexpr int evaluations = 200;                // of the one search of "greedy"
+constexpr double sample = 0.05;                 // along a lane and over it [m]
 
 /// Along the line of the design and to its left.
 class Axis {
  public:
   explicit Axis(const DesignWords& words)
-      : from_(words.from), heading_(words.heading), ahead_(std::cos(heading_), std::sin(heading_)) {}
+      : from_(words.from),
+        heading_(words.heading),
+        ahead_(std::cos(heading_), std::sin(heading_)) {}
   double heading() const { return heading_; }
   double along(double x, double y) const { return (Vector2d(x, y) - from_).dot(ahead_); }
   double left(double x, double y) const {
@@ -74,6 +76,7 @@ class PlainPlanner : public JobPlanner {
     find_design(first_scan);
     base_.z = ground_.at(base_.x, base_.y);
     if (policy.digs == PlainPolicy::Digs::searched) search();
+    if (policy.digs == PlainPolicy::Digs::fixed) place_fixed();
     arrive();
   }
 
@@ -221,6 +224,8 @@ class PlainPlanner : public JobPlanner {
       const double off = std::hypot(base_along() - first_station(), axis_.left(base_.x, base_.y));
       if (off > 0.3) return move_to(first_station());
     }
+    dump_ = dumps_.from(base_, axis_.heading(), ground_);
+    if (!dump_.in_reach) phase_ = Phase::leave;
     while (phase_ != Phase::leave) {
       if (at_ >= lanes_.size()) {
         if (must_scan_) return scan();
@@ -300,8 +305,8 @@ class PlainPlanner : public JobPlanner {
     rules.drag_keeps_angle = true;
     const double start = start_over(least_height_, lane);
     const double along = base_along() + start;
-    const double over = std::clamp(ground_at(along, lane.left) - floor_at(along, lane.left), 0.0,
-                                   policy_.layer);
+    const double over =
+        std::clamp(ground_at(along, lane.left) - floor_at(along, lane.left), 0.0, policy_.layer);
     DigParameters numbers;
     numbers.penetration_angle = finishing_penetration;
     numbers.penetration_length = (over + 0.02) / std::sin(finishing_penetration);
@@ -325,6 +330,7 @@ class PlainPlanner : public JobPlanner {
     double deepest = drag_start(), most = -1.0;
     for (double x = drag_start(); x > drag_end(); x -= 0.5 * sample) {
       const double ground = ground_at(base_along() + x, lane.left);
+      if (!(ground > level + least_layer)) continue;  // dug already
       double z = ground;
       double at = x;
       while (z > level && z >= floor_at(base_along() + at, lane.left)) {
@@ -342,9 +348,7 @@ class PlainPlanner : public JobPlanner {
   /// From the far end of the station, or as near to it as the machine can.
   std::optional<DigPath> path_of(const DigParameters& numbers, double start, const Lane& lane,
                                  const DigPathOptions& rules) const {
-    const auto ground = [&](double x) {
-      return ground_at(base_along() + x, lane.left) - base_.z;
-    };
+    const auto ground = [&](double x) { return ground_at(base_along() + x, lane.left) - base_.z; };
     for (double x = start; x > start - 1.2; x -= 0.1) {
       DigParameters tried = numbers;
       tried.drag_length = std::max(0.0, numbers.drag_length - (start - x));
@@ -359,10 +363,15 @@ class PlainPlanner : public JobPlanner {
     step.swung = std::remainder(axis_.heading() - base_.heading, 2.0 * pi);
     step.lane = lane.left - axis_.left(base_.x, base_.y);
     step.path = path;
-    const DumpPlace place = dumps_.from(base_, axis_.heading(), ground_);
-    step.dump = place.pin;
-    step.truck = place.truck;
+    step.dump = dump_.pin;
+    step.truck = dump_.truck;
     return step;
+  }
+
+  /// From where the joints have most room.
+  void place_fixed() {
+    const auto path = make_dig_path_anywhere(machine_, numbers_, [](double) { return 0.0; });
+    if (const auto* found = std::get_if<DigPath>(&path)) policy_.farthest = found->start_x;
   }
 
   void search() {
@@ -370,7 +379,9 @@ class PlainPlanner : public JobPlanner {
     options.method = PlanMethod::search;
     options.search.stop.evaluations = evaluations;
     const DigPlan plan = plan_dig(machine_, site_.soil, site_.density.percent, options);
-    if (plan.dig) numbers_ = plan.dig->parameters;
+    if (!plan.dig) return;
+    numbers_ = plan.dig->parameters;
+    policy_.farthest = plan.dig->start_x;
   }
 
   PlainPolicy policy_;
@@ -380,6 +391,7 @@ class PlainPlanner : public JobPlanner {
   SeenGround ground_;
   HeightMap design_;  ///< NaN where nothing is to be dug
   DumpPlaces dumps_;
+  DumpPlace dump_;  ///< of the present step
   BasePose base_;
   DigParameters numbers_ = paper_fixed_path();
   double least_height_ = 1e9;  ///< of the design [m]

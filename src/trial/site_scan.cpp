@@ -162,11 +162,10 @@ struct Registration {
 
 SiteLooks looks_of(const SiteSensor& sensor) {
   if (sensor.on_boom) {
-    const std::vector<double> swings = {-75.0 * degree, -25.0 * degree, 25.0 * degree,
-                                        75.0 * degree};
-    return {{1.5, 0.0}, swings, 54.0 * degree, 0.5, 7.0, 0.03, {0.008, 0.0032}};
+    const std::vector<double> swings = {-50.0 * degree, 0.0, 50.0 * degree};
+    return {{1.5, 0.0}, swings, 70.0 * degree, 0.5, 7.0, 0.03, {0.008, 0.0032}};
   }
-  return {{0.6, 0.7},    {-60.0 * degree, 0.0, 60.0 * degree}, 64.0 * degree, 0.5, 12.0, 0.03,
+  return {{0.6, 0.7},     {-60.0 * degree, 0.0, 60.0 * degree}, 64.0 * degree, 0.5, 12.0, 0.03,
           {0.006, 0.0021}};
 }
 
@@ -204,8 +203,8 @@ Scan scan_site(const HeightMap& seen, const SiteSensor& sensor, const BasePose& 
       look.along(azimuth, [&](const Vector3d& ray, double range) {
         const double grown = std::pow(range, sensor.range_power);
         const Vector3d at = place.sensor + range * ray;
-        const double off = grown * (sensor.noise * random.normal() +
-                                    sensor.pattern * pattern.at(at.x(), at.y()));
+        const double off =
+            grown * (sensor.noise * random.normal() + sensor.pattern * pattern.at(at.x(), at.y()));
         cloud->points.push_back(registration.moved(at + off * ray));
       });
     }

@@ -8,6 +8,7 @@
 #include <excavplan/base/error.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/trial/job_score.hpp>
 #include <excavplan/trial/site_scan.hpp>
 
 #include "base/angles.hpp"
@@ -17,7 +18,7 @@
 #include "ground/grid_cells.hpp"
 #include "trial/dump_places.hpp"
 #include "trial/plan_polygon.hpp"
-#include "trial/scored_design.hpp"
+#include "trial/tracked_path.hpp"
 
 namespace excavplan {
 namespace {
@@ -25,11 +26,7 @@ namespace {
 using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
-constexpr double first_time = 1767225600.0;  // 2026-01-01; ours [s]
-constexpr double tracking_length = 0.5;      // of the error along the tip's travel [m]
-constexpr double share_of_variance = 0.5;    // of that error, and of the one of the whole dig
-
-constexpr double spare_reach = 0.3;          // for what a move landed off; ours [m]
+constexpr double spare_reach = 0.3;  // for what a move landed off; ours [m]
 
 // Streams of a step.
 constexpr std::uint64_t tracking_stream = 1;
@@ -38,25 +35,6 @@ constexpr std::uint64_t landing_stream = 3;
 constexpr std::uint64_t scan_stream = 4;
 
 double turned(double angle) { return std::remainder(angle, 2.0 * pi); }
-
-/// Errors of the tip's height at the poses of a path: bias, a draw, and one that varies along it.
-std::vector<double> height_errors(const DigPath& path, const HiddenErrors& errors, Random random) {
-  const double sd = errors.height_sd * std::sqrt(share_of_variance);
-  const double of_dig = errors.height_bias + sd * random.normal();
-  double along = sd * random.normal();
-  std::vector<double> all;
-  for (std::size_t i = 0; i < path.poses.size(); ++i) {
-    const DigPose& pose = path.poses[i];
-    if (i > 0 && pose.phase != DigPhase::lift) {
-      const BucketPose& last = path.poses[i - 1].bucket;
-      const double travel = std::hypot(pose.bucket.x - last.x, pose.bucket.z - last.z);
-      const double kept = std::exp(-travel / tracking_length);
-      along = kept * along + sd * std::sqrt(1.0 - kept * kept) * random.normal();
-    }
-    all.push_back(of_dig + along);
-  }
-  return all;
-}
 
 /// The poses that the machine came to.
 DigPath driven(const DigPath& path, const DigResult& dig) {
@@ -114,29 +92,10 @@ CycleShare cycle_cost(const Machine& machine, const DigPath& path, const DigResu
 
 }  // namespace
 
-DigPath shifted_path(const Machine& machine, DigPath path, double lane,
-                     const std::vector<double>& shift) {
-  require(shift.size() == path.poses.size(), "shift of a path: must be one for each pose");
-  const Machine bent = machine_for_planned_path(machine);
-  for (std::size_t i = 0; i < shift.size(); ++i) {
-    DigPose& pose = path.poses[i];
-    for (int eighths = 8; eighths > 0; --eighths) {
-      const double z = pose.bucket.z + shift[i] * eighths / 8.0;
-      const BucketPose reached = {std::hypot(pose.bucket.x, lane), z, pose.bucket.floor_angle};
-      const auto joints = inverse_kinematics(bent, reached);
-      if (!std::holds_alternative<JointAngles>(joints)) continue;
-      pose.joints = std::get<JointAngles>(joints);
-      pose.bucket.z = z;
-      break;
-    }
-  }
-  return path;
-}
-
 struct TrueSite::State {
   State(const HiddenSite& of, const Machine& digger, const TruthOptions& how)
       : site(of), machine(digger), options(how), ground(of.ground) {
-    density = site.mean_density();
+    density = mean_density(site);
     simulator = options.simulator.make(machine, site.soil, density);
     seen_height = ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
                                      std::numeric_limits<double>::quiet_NaN());
@@ -164,8 +123,8 @@ struct TrueSite::State {
         const double along = front * (2.0 * i / (places - 1) - 1.0);
         const double left = half * (2.0 * k / (places - 1) - 1.0);
         const double c = std::cos(base.heading), s = std::sin(base.heading);
-        const double z = height_at(surface, base.x + c * along - s * left,
-                                   base.y + s * along + c * left);
+        const double z =
+            height_at(surface, base.x + c * along - s * left, base.y + s * along + c * left);
         if (std::isnan(z)) continue;
         sum += z;
         ++count;
@@ -211,11 +170,11 @@ struct TrueSite::State {
   double density = 0.0;
   std::unique_ptr<const SoilSimulator> simulator;
   BasePose known, real;
-  double time = first_time;
+  double time = trial_begin;
   std::uint64_t step = 0;   ///< steps done
   std::uint64_t scans = 0;  ///< made
   SolidsLedger solids;
-  ArrayXXd seen_height;     ///< of the true surface when a cell was last seen; NaN: never [m]
+  ArrayXXd seen_height;  ///< of the true surface when a cell was last seen; NaN: never [m]
 };
 
 TrueStep TrueSite::State::dig(const JobStep& job) {
@@ -224,16 +183,20 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   const double aside = site.errors.side_sd * tracking.normal();
   std::vector<double> shift = height_errors(job.path, site.errors, tracking);
   for (double& z : shift) z += job.base.z - real.z;
-  const DigPath path = shifted_path(machine, job.path, job.lane, shift);
   const PoseError error = {known, real};
   DigLine line = dig_line(job.base, job.swung, job.lane);
   line.heading += real.heading - known.heading;
-  line.origin = error.moved(line.origin) +
-                aside * Vector2d(-std::sin(line.heading), std::cos(line.heading));
+  line.origin =
+      error.moved(line.origin) + aside * Vector2d(-std::sin(line.heading), std::cos(line.heading));
   line.z = real.z;
+  const HeightMap surface = ground.surface();
+  const DigPath path = tracked_path(machine, job.path, shift, [&](double x) {
+    const Vector2d at = line.place(x, 0.0);
+    return height_at(surface, at.x(), at.y()) - line.z;
+  });
   const Terrain before = ground;
-  const DigResult dug = dig_along(*simulator, machine, ground, line,
-                                  soil_voids(site.soil, density), path);
+  const DigResult dug =
+      dig_along(*simulator, machine, ground, line, soil_voids(site.soil, density), path);
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
   require_reach(job, dump_at);
@@ -297,8 +260,8 @@ TrueStep TrueSite::State::move(const JobStep& job) {
 Scan TrueSite::State::scan() {
   const std::uint64_t seed = Random(options.seed, scan_stream, scans++).bits();
   const HeightMap surface = ground.surface();
-  Scan scan = scan_site(with_obstacles(surface, site.known.job.obstacles), site.known.sensor, real,
-                        seed);
+  Scan scan =
+      scan_site(with_obstacles(surface, site.known.job.obstacles), site.known.sensor, real, seed);
   scan.name = "scan " + std::to_string(scans);
   const HeightMap& cells = site.first_scan;
   for (const auto& cloud : scan.clouds) {
@@ -322,15 +285,24 @@ TrueStep TrueSite::execute(const JobStep& step) {
   try {
     switch (step.what) {
       case JobAction::dig:
-      case JobAction::finish: done = state_->dig(step); break;
-      case JobAction::move: done = state_->move(step); break;
-      case JobAction::scan: state_->take_scan(done); break;
-      case JobAction::wait: done.time = state_->options.wait_time; break;
-      case JobAction::stop: break;
+      case JobAction::finish:
+        done = state_->dig(step);
+        break;
+      case JobAction::move:
+        done = state_->move(step);
+        break;
+      case JobAction::scan:
+        state_->take_scan(done);
+        break;
+      case JobAction::wait:
+        done.time = state_->options.wait_time;
+        break;
+      case JobAction::stop:
+        break;
     }
   } catch (const Error& error) {
-    throw Error(error.kind(), "step " + std::to_string(step.id) + " (" + name(step.what) +
-                                  "): " + error.what());
+    throw Error(error.kind(),
+                "step " + std::to_string(step.id) + " (" + name(step.what) + "): " + error.what());
   }
   state_->time += done.time;
   done.report.time = state_->time;

@@ -10,8 +10,8 @@
 #include "frame/tool.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
-#include "results/trial_results.hpp"
 #include "simulate_site/trial_planner.hpp"
+#include "trial/trial_json.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -69,8 +69,8 @@ std::vector<std::string> lines_of(const JobTrial& trial) {
   const auto percent = [](double value) { return readable(value, 3) + " %"; };
   return {std::string(score.finished ? "finished" : "not finished") + ": rms " +
               readable(1e3 * score.rms, 3) + " mm, p95 " + readable(1e3 * score.p95, 3) +
-              " mm, beyond twice the tolerance " + percent(100.0 * score.beyond_twice) +
-              ", seen " + percent(100.0 * score.seen),
+              " mm, beyond twice the tolerance " + percent(100.0 * score.beyond_twice) + ", seen " +
+              percent(100.0 * score.seen),
           "left " + percent(score.left_percent()) + ", overdig " +
               percent(score.overdig_percent()) + ", spill " + percent(score.spill_percent()),
           std::to_string(trial.digs) + " digs, " + std::to_string(trial.finishing) +

@@ -2,11 +2,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate_site/trial_planner.hpp"
 
-#include <excavplan/trial/plain_planners.hpp>
+#include <filesystem>
+#include <random>
 
-#include "frame/arguments.hpp"
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/job/site_job.hpp>
+#include <excavplan/trial/job_score.hpp>
+#include <excavplan/trial/plain_planners.hpp>
+#include <excavplan/trial/true_site.hpp>
 
 namespace excavplan::tools {
+namespace {
+
+/// A folder that goes when the object does.
+class PassingFolder {
+ public:
+  PassingFolder() {
+    std::random_device random;
+    path_ = std::filesystem::temp_directory_path() /
+            ("simulate-site-" + std::to_string(random()) + std::to_string(random()));
+    std::filesystem::create_directory(path_);
+  }
+  ~PassingFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  std::string job() const { return (path_ / "job").string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The job that the program itself would plan.
+class OwnPlanner : public JobPlanner {
+ public:
+  OwnPlanner(const JobSettings& settings, const Scan& first)
+      : job_(SiteJob::begin(folder_.job(), settings, first, trial_begin)) {}
+  JobStep next() override { return job_.next(); }
+  void done(long long step, const StepReport& report) override { job_.done(step, report); }
+
+ private:
+  PassingFolder folder_;
+  SiteJob job_;
+};
+
+JobSettings settings_of(const SiteBrief& site, const SoilKind& soil, const Machine& machine) {
+  JobSettings settings;
+  settings.site.soil = soil;
+  settings.site.machine = machine;
+  settings.site.law =
+      load_density_law(shipped_or_file("laws", machine.name + "-" + site.soil.name));
+  settings.design = site.job;
+  settings.surface = site.design;
+  settings.density_percent = site.density.percent;
+  return settings;
+}
+
+Scan first_scan(const SiteBrief& site) {
+  Scan scan;
+  scan.files = {site.job.scan_file};
+  scan.z_is_up = true;
+  return scan;
+}
+
+}  // namespace
 
 std::vector<std::string> planner_words() {
   std::vector<std::string> words = {"default", "known"};
@@ -19,8 +80,10 @@ std::unique_ptr<JobPlanner> planner_of(const std::string& word, const HiddenSite
   for (const PlainPolicy& policy : plain_policies()) {
     if (policy.word == word) return plain_planner(policy, site.known, site.first_scan, machine);
   }
-  // SiteJob comes here: "default" of site.known, "known" with site.density and site.soil.
-  usage_error("planner '" + word + "' is not there yet, must be operator, greedy or fixed");
+  const bool knows = word == "known";
+  JobSettings settings = settings_of(site.known, knows ? site.soil : site.known.soil, machine);
+  if (knows) settings.density_percent = mean_density(site);
+  return std::make_unique<OwnPlanner>(settings, first_scan(site.known));
 }
 
 }  // namespace excavplan::tools

@@ -35,9 +35,9 @@ struct SiteSensor {
 struct SiteBrief {
   JobDesign job;
   DesignSurface design;
-  SoilKind soil;                     ///< the product's of that name, with the site's own numbers
-  GroundDensity density{50.0, 25.0}; ///< what is known of it before the first dig
-  std::string machine = "zx120";     ///< name of its class
+  SoilKind soil;                      ///< the product's of that name, with the site's own numbers
+  GroundDensity density{50.0, 25.0};  ///< what is known of it before the first dig
+  std::string machine = "zx120";      ///< name of its class
   SiteSensor sensor;
 };
 
@@ -53,28 +53,25 @@ struct DensityField {
 
 /// What is off in a machine, its scale and its moves.
 struct HiddenErrors {
-  double payload_scale = 0.0;         ///< share by which the scale reads too much [-]
-  double payload_noise = 0.01;        ///< sd of one reading [-]
-  double height_bias = 0.0;           ///< of the tip over its path [m]
-  double height_sd = 0.012;           ///< of a dig, and along it [m]
-  double side_sd = 0.02;              ///< of a dig, sideways [m]
-  double landing_sd = 0.05;           ///< of a move [m]
-  double landing_turn_sd = 0.0174533; ///< [rad]
-  double pose_sd = 0.01;              ///< with which the place is known then [m]
-  double pose_turn_sd = 0.00174533;   ///< [rad]
+  double payload_scale = 0.0;          ///< share by which the scale reads too much [-]
+  double payload_noise = 0.01;         ///< sd of one reading [-]
+  double height_bias = 0.0;            ///< of the tip over its path [m]
+  double height_sd = 0.012;            ///< of a dig, and along it [m]
+  double side_sd = 0.02;               ///< of a dig, sideways [m]
+  double landing_sd = 0.05;            ///< of a move [m]
+  double landing_turn_sd = 0.0174533;  ///< [rad]
+  double pose_sd = 0.01;               ///< with which the place is known then [m]
+  double pose_turn_sd = 0.00174533;    ///< [rad]
 };
 
 /// A site with its truth.
 struct HiddenSite {
   SiteBrief known;
-  Terrain ground;        ///< at the start, in the site's frame, with void ratios of the bank
-  SoilKind soil;         ///< as it is
+  Terrain ground;  ///< at the start, in the site's frame, with void ratios of the bank
+  SoilKind soil;   ///< as it is
   DensityField density;
   HiddenErrors errors;
   HeightMap first_scan;  ///< first scan as cells; NaN: not seen
-
-  /// Mean of the true density over what the design takes out [%].
-  double mean_density() const;
 };
 
 /// Edge of the cells of the truth; ours [m].

@@ -8,7 +8,8 @@
 
 namespace excavplan {
 
-/// What a job costs at its best, by which a planner's cost is judged: per cubic metre of the design.
+/// What a job costs at its best, by which a planner's cost is judged: per cubic metre of the
+/// design.
 ///
 /// R: the best dig of a full bucket by cycle energy on level ground of the mean true density, with
 /// a swing of 22 degrees and the bucket pin 2.0 m high when it dumps; as many of these as the
@@ -33,9 +34,9 @@ struct JobReference {
 /// Settings of job_reference().
 struct ReferenceOptions {
   SimulatorKind simulator = default_simulator();
-  int evaluations = 600;    ///< of the search; ours
-  double full = 0.95;       ///< least share of the heaped capacity of a full bucket; ours
-  unsigned threads = 0;     ///< 0: one per core; the same result for any number
+  int evaluations = 600;  ///< of the search; ours
+  double full = 0.95;     ///< least share of the heaped capacity of a full bucket; ours
+  unsigned threads = 0;   ///< 0: one per core; the same result for any number
 };
 
 /// @throws Error (bad_input) as search_dig(); if the machine states no swing or engine

@@ -40,4 +40,7 @@ JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen);
 /// outside [m].
 HeightMap footprint_of(const HiddenSite& site);
 
+/// Mean of the true density over what the design takes out [%].
+double mean_density(const HiddenSite& site);
+
 }  // namespace excavplan

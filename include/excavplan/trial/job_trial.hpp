@@ -26,25 +26,25 @@ struct TrialOptions {
   TruthOptions truth = {};
   /// Of a job that does not come to its end: ours.
   long long most_steps = 3000;
-  double most_time = 12.0 * 3600.0;  ///< [s]; ours
-  int most_waits = 5;                ///< in a row; ours
+  double most_time = 12.0 * 3600.0;                 ///< [s]; ours
+  int most_waits = 5;                               ///< in a row; ours
   std::function<void(const TrialStep&)> each = {};  ///< told of every step
 };
 
 /// What became of a job.
 struct JobTrial {
   JobScore score;
-  std::string reason;  ///< of its end
+  std::string reason;    ///< of its end
   bool stopped = false;  ///< by the planner, not by a bound of TrialOptions
-  int digs = 0;        ///< with those that finish
+  int digs = 0;          ///< with those that finish
   int finishing = 0;
   int moves = 0;
   int scans = 0;
   int stalls = 0;
-  double energy = 0.0;         ///< of cycles and moves [J]
-  double time = 0.0;           ///< of cycles, moves, scans and waits [s]
-  double planning_time = 0.0;  ///< by the clock [s]
-  double hauled = 0.0;         ///< true, into trucks [kg]
+  double energy = 0.0;           ///< of cycles and moves [J]
+  double time = 0.0;             ///< of cycles, moves, scans and waits [s]
+  double planning_time = 0.0;    ///< by the clock [s]
+  double hauled = 0.0;           ///< true, into trucks [kg]
   std::map<int, double> trucks;  ///< true mass of each load by its number [kg]
   SolidsLedger solids;
   Terrain after;

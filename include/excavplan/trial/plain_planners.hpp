@@ -32,8 +32,8 @@ struct PlainPolicy {
   int most_stalls = 6;       ///< likewise
 };
 
-/// "operator": two lanes of a trench of 1 m at 0.15 m to both sides, stations 2.7 m apart, layers of
-/// 0.25 m along a level drag, a layer 0.7 times as thick after a stall, finishing passes of one
+/// "operator": two lanes of a trench of 1 m at 0.15 m to both sides, stations 2.7 m apart, layers
+/// of 0.25 m along a level drag, a layer 0.7 times as thick after a stall, finishing passes of one
 /// drag on the floor. "fixed": the paper's path. "greedy": the path of most mass per energy of the
 /// cycle.
 const std::vector<PlainPolicy>& plain_policies();

@@ -15,10 +15,10 @@ namespace excavplan {
 
 /// How far and how densely the sensor of a site looks; all numbers are ours.
 ///
-/// A scan is several looks while the upper structure swings, three of a lidar on the cab and four
-/// of a camera on the boom, each over its part of the circle: a camera of 69 x 42 degrees sees too
-/// little from one place. The looks are taken on the way to the dump and back, so that a scan costs
-/// no more time for them.
+/// A scan is three looks while the upper structure swings, at 60 degrees to both sides and ahead of
+/// a lidar on the cab, at 50 of a camera on the boom: one of 69 x 42 degrees sees too little from
+/// one place. The looks are taken on the way to the dump and back, so that a scan costs no more
+/// time for them.
 struct SiteLooks {
   Eigen::Vector2d mount{0, 0};  ///< ahead of the swing axis and to its left [m]
   std::vector<double> swings;   ///< of the looks, to the left [rad]

@@ -16,6 +16,9 @@
 
 namespace excavplan {
 
+/// When trials begin, 2026-01-01, since 1970-01-01 UTC; ours [s].
+inline constexpr double trial_begin = 1767225600.0;
+
 /// What a move costs; ours, as a machine of 12 t on its tracks: 2 km/h, and a third of its weight
 /// as rolling resistance.
 struct MoveCost {
@@ -31,8 +34,8 @@ struct TruthOptions {
   std::uint64_t seed = 1;                         ///< of all draws
   bool scans_each_dig = false;                    ///< a scan is made after each dig as well
   MoveCost move = {};
-  double scan_time = 3.0;  ///< [s]
-  double wait_time = 60.0; ///< of JobAction::wait; ours [s]
+  double scan_time = 3.0;   ///< [s]
+  double wait_time = 60.0;  ///< of JobAction::wait; ours [s]
 };
 
 /// What a step did, and cost.
@@ -54,11 +57,12 @@ struct SolidsLedger {
 
 /// The true ground and the machine on it.
 ///
-/// A dig: its path is shifted by the tracking errors, and the joints follow from the shifted poses
-/// by inverse kinematics, as far as their limits allow. The machine digs until it has finished or
-/// stalls; what is then in the bucket is dumped. Where the bank was cut its void ratios are set
-/// anew (set_void_ratios()). The line of a dig and the dump are off as the known pose of the
-/// machine is. Tracks leave no mark, and the ground holds the machine everywhere.
+/// A dig: the tracking errors shift its path, and the joints follow by inverse kinematics in the
+/// plane of the path; also in a lane, whose front reaches a little farther. The bucket turns as
+/// much as keeps its heel off the ground. The machine digs until it has finished or stalls; what is
+/// then in the bucket is dumped. Where the bank was cut its void ratios are set anew
+/// (set_void_ratios()). The line of a dig and the dump are off as the known pose of the machine is.
+/// Tracks leave no mark, and the ground holds the machine everywhere.
 class TrueSite {
  public:
   /// @throws Error (bad_input) as require_machine() and SimulatorKind::make()
@@ -86,13 +90,5 @@ class TrueSite {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// A path with its poses shifted and its joints made to fit.
-/// @param lane  JobStep::lane [m]
-/// @param shift  of each pose in height [m]; where the joints cannot follow, as much of it as they
-/// can, in eighths
-/// @throws Error (bad_input) unless there are as many as poses
-DigPath shifted_path(const Machine& machine, DigPath path, double lane,
-                     const std::vector<double>& shift);
 
 }  // namespace excavplan

@@ -4,17 +4,18 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <excavplan/trial/job_reference.hpp>
 #include <excavplan/trial/job_trial.hpp>
 
-#include "results/json_fwd.hpp"
 
 namespace excavplan {
 
 /// The keys of simulate-site.
-Json trial_json(const JobTrial& trial);
+nlohmann::ordered_json trial_json(const JobTrial& trial);
 /// R and B.
-Json reference_json(const JobReference& reference);
+nlohmann::ordered_json reference_json(const JobReference& reference);
 
 /// The lines of the log of a job (docs/formats.md#job-log) that a step gives, each with its end.
 std::string log_lines(const TrialStep& step);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "results/trial_results.hpp"
+#include "trial/trial_json.hpp"
 
 #include <cmath>
 
@@ -8,6 +8,8 @@
 
 namespace excavplan {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// Bases of a log are without units in their keys, as other programs read them.
 Json base_json(const BasePose& base) {
@@ -44,7 +46,8 @@ Json dig_json(const TrialStep& at) {
 Json line_of(const TrialStep& at) {
   switch (at.step.what) {
     case JobAction::dig:
-    case JobAction::finish: return dig_json(at);
+    case JobAction::finish:
+      return dig_json(at);
     case JobAction::move:
       return {{"type", "move"},
               {"time_s", at.done.time},
@@ -61,9 +64,9 @@ Json line_of(const TrialStep& at) {
 
 }  // namespace
 
-Json trial_json(const JobTrial& trial) {
+nlohmann::ordered_json trial_json(const JobTrial& trial) {
   const JobScore& score = trial.score;
-  Json json;
+  nlohmann::ordered_json json;
   json["finished"] = score.finished;
   json["reason"] = trial.reason;
   json["rms_m"] = score.rms;
@@ -87,12 +90,12 @@ Json trial_json(const JobTrial& trial) {
   json["time_min"] = trial.time / 60.0;
   json["planning_s"] = trial.planning_time;
   json["hauled_kg"] = trial.hauled;
-  json["trucks_kg"] = Json::array();
+  json["trucks_kg"] = nlohmann::ordered_json::array();
   for (const auto& [number, mass] : trial.trucks) json["trucks_kg"].push_back(mass);
   return json;
 }
 
-Json reference_json(const JobReference& reference) {
+nlohmann::ordered_json reference_json(const JobReference& reference) {
   return {{"density_percent", reference.density_percent},
           {"design_cut_m3", reference.design_cut},
           {"swollen_m3", reference.swollen},
