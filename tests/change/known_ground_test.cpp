@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/change/known_ground.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -118,6 +119,20 @@ TEST(KnownGround, GroundWithoutLooseSoilIsAsUnknownGround) {
   EXPECT_NEAR(change.after.value, plain.after.value, 1e-12);
   EXPECT_EQ(change.cut->loose.value, 0.0);
   EXPECT_EQ(change.cut->bank_share(), 1.0);
+}
+
+TEST(KnownGround, ADigThatLeftNoHoleEndsTrust) {
+  const Trench trench;
+  const SurfacePair dug = trench.scene(0.003, 4);
+  const SurfacePair still = {dug.before, trench.scene(0.003, 5).before, {}};
+  const auto ends_trust = [](const VolumeChange& change) {
+    return std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& each) {
+      return each.code == WarningCode::no_hole_found && each.ends_trust;
+    });
+  };
+  EXPECT_TRUE(ends_trust(measure_change(still, trench.known(dug.before.height, false))));
+  EXPECT_FALSE(ends_trust(measure_change(dug, trench.known(dug.before.height, false))));
+  EXPECT_FALSE(ends_trust(measure_change(still))) << "nobody says that there was a dig";
 }
 
 TEST(KnownGround, ALayerOfAnotherSizeIsRefused) {
