@@ -174,6 +174,22 @@ TEST(UpdatedGround, WhatDidNotChangeIsTheMeanOfLeastVariance) {
   EXPECT_EQ(after.seen(0, 0), 200.0);
 }
 
+TEST(UpdatedGround, ASurveyBetweenTheCellsIsNotMoved) {
+  const auto sloping = [](double offset) {
+    HeightMap map = flat_ground({offset, offset, 2.0 + offset, 2.0 + offset}, 0.05);
+    for (Eigen::Index col = 0; col < map.z.cols(); ++col) map.z.col(col).setConstant(map.x(col));
+    return map;
+  };
+  const HeightMap truth = sloping(0.0);
+  GroundState unknown;
+  unknown.terrain = undisturbed(truth);
+  unknown.terrain.bank.z.setConstant(nan);
+  SeenGround seen;
+  seen.surface = sloping(0.017);
+  const HeightMap& bank = updated_ground(unknown, seen).terrain.bank;
+  EXPECT_LT((bank.z - truth.z).block(1, 1, 38, 38).abs().maxCoeff(), 1e-9);
+}
+
 TEST(UpdatedGround, TheErrorThatASurveySharesStays) {
   const auto one = [](double value) { return Eigen::ArrayXXd::Constant(1, 1, value); };
   GroundState state = state_of(one(0.2), one(0.0));
