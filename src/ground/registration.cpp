@@ -126,6 +126,7 @@ class Aligner {
     samples_ = std::move(level);
     const Motion motion = fitted();
     std::vector<ReliefCell> cells;
+    cells.reserve(sloping.size());
     for (const Sample& sample : sloping) {
       cells.push_back(
           {sample.cell, sample.effect.head<2>(), sample.change - sample.effect.dot(motion)});
