@@ -263,6 +263,7 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
   const VolumeChange& change = volumes.change;
   std::vector<Warning> doubts = volumes.of_points;
   append(check_volumes(change, seen.unit()), doubts);
+  append(check_slopes(surfaces.pairs(), change), doubts);
   append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {

@@ -18,6 +18,7 @@
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
 #include "ground/noise_model.hpp"
+#include "ground/relief_pieces.hpp"
 #include "ground/slopes.hpp"
 #include "ground/too_few_cells.hpp"
 #include "ground/window.hpp"
@@ -78,12 +79,8 @@ class Aligner {
   }
 
   Alignment find() {
-    Motion motion = fitted();
-    if (options_.left_out && !relief_agrees(motion)) {
-      leave_out_relief();
-      motion = fitted();
-    }
-    return judge(motion);
+    if (options_.left_out) keep_relief_that_agrees();
+    return judge(fitted());
   }
 
  private:
@@ -119,27 +116,26 @@ class Aligner {
 
   static bool is_relief(const Sample& sample) { return sample.effect.head<2>().norm() > relief; }
 
-  /// All sides of relief show a shift alike. A heap that grew shows one to each side.
-  bool relief_agrees(const Motion& motion) const {
-    constexpr double most_sds = 3.0;  // ours
-    constexpr double enough = 0.6;    // ours: of the samples with relief
-    double agree = 0.0;
-    double of_relief = 0.0;
-    for (const Sample& sample : samples_) {
-      if (!is_relief(sample)) continue;
-      of_relief += 1.0;
-      const double away = std::abs(sample.change - sample.effect.dot(motion));
-      if (away < most_sds * scale_) agree += 1.0;
-    }
-    return agree >= enough * of_relief;
-  }
-
-  void leave_out_relief() {
+  /// Where none does, there is no shift and no turn in plan.
+  void keep_relief_that_agrees() {
     std::vector<Sample> level;
-    for (const Sample& sample : samples_) {
-      if (!is_relief(sample)) level.push_back(sample);
+    std::vector<Sample> sloping;
+    for (const Sample& sample : samples_) (is_relief(sample) ? sloping : level).push_back(sample);
+    lateral_ = false;
+    if (level.size() < fewest_cells) return;
+    samples_ = std::move(level);
+    const Motion motion = fitted();
+    std::vector<ReliefCell> cells;
+    cells.reserve(sloping.size());
+    for (const Sample& sample : sloping) {
+      cells.push_back(
+          {sample.cell, sample.effect.head<2>(), sample.change - sample.effect.dot(motion)});
     }
-    if (level.size() >= fewest_cells) samples_ = std::move(level);
+    const Mask agrees = relief_that_agrees(cells, map_, scale_);
+    for (const Sample& sample : sloping) {
+      if (agrees(sample.cell.row, sample.cell.col)) samples_.push_back(sample);
+    }
+    lateral_ = agrees.count() >= static_cast<Eigen::Index>(fewest_cells);
   }
 
   void take_samples(const Surface& before, const Surface& after) {
@@ -242,12 +238,7 @@ class Aligner {
         (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
     reliable_ = {std::sqrt(share.x()),       std::sqrt(share.y()), 1.0, 1.0, 1.0,
                  std::sqrt(share.maxCoeff())};
-    if (options_.left_out && !has_relief()) reliable_[0] = reliable_[1] = reliable_[5] = 0.0;
-  }
-
-  bool has_relief() const {
-    return std::count_if(samples_.begin(), samples_.end(), is_relief) >=
-           static_cast<std::ptrdiff_t>(fewest_cells);
+    if (!lateral_) reliable_[0] = reliable_[1] = reliable_[5] = 0.0;
   }
 
   Solution solve(double variance, const Chosen& chosen) const {
@@ -338,6 +329,7 @@ class Aligner {
   std::vector<Sample> samples_;
   Motion prior_;
   std::array<double, 6> reliable_ = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  bool lateral_ = true;     // shift and turn in plan can be told
   std::size_t stride_ = 1;  // of the samples in use
   double scale_ = 0.0;      // robust sd of a stable cell [m]
   Alignment found_;

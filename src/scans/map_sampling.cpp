@@ -19,6 +19,13 @@ Index first_centre(double from, Index cells) {
   return static_cast<Index>(std::clamp(first, 0.0, static_cast<double>(cells)));
 }
 
+/// The value of a cell is that of its centre: elsewhere it would be moved by up to half a cell.
+bool lies_off_centre(const HeightMap& grid, const Eigen::Vector2d& at) {
+  constexpr double rounding = 1e-6;
+  const Eigen::Array2d cells = (at - grid.origin) / grid.cell_size;
+  return ((cells - cells.floor() - 0.5).abs() > rounding).any();
+}
+
 }  // namespace
 
 double cell_value(const HeightMap& grid, const Eigen::ArrayXXd& layer, const Eigen::Vector2d& at) {
@@ -52,7 +59,7 @@ Eigen::ArrayXXd layer_on(const HeightMap& other, const HeightMap& grid,
       }
     }
     double value = known > 0 ? sum / static_cast<double>(known) : std::nan("");
-    if (inside == 0) {
+    if (inside == 0 || (inside == 1 && lies_off_centre(grid, centre))) {
       value = height_at(map, centre.x(), centre.y());
       if (std::isnan(value)) value = cell_value(grid, layer, centre);
     }

@@ -9,8 +9,8 @@
 
 namespace excavplan {
 
-/// A layer of `grid` on the cells of `other`: the mean of its known cells whose centres lie in a
-/// cell, or the value at its centre where none does. NaN where nothing is known.
+/// A layer of `grid` on the cells of `other`: the mean of its known cells where the centres of
+/// several lie in a cell, else the value at its centre. NaN where nothing is known.
 Eigen::ArrayXXd layer_on(const HeightMap& other, const HeightMap& grid,
                          const Eigen::ArrayXXd& layer);
 

@@ -214,15 +214,21 @@ Balance balance_of(const AreaChange& area) {
   return sum;
 }
 
-/// Slope of the steepest tenth of a kind of zones [-].
-double steepness(const VolumeChange& change, ZoneKind kind) {
+/// Slope of the steepest tenth of a kind of zones, before or after, whichever is the steeper [-]. A
+/// wall of a hole is ground that was seen; a heap in the hollow between two others is a steep
+/// change and stands no steeper than they.
+double steepness(const std::vector<const SurfacePair*>& pairs, const VolumeChange& change,
+                 ZoneKind kind) {
   std::vector<double> slopes;
-  for (const AreaChange& area : change.areas) {
-    const Gradient gradient = gradient_of(area.difference);
-    for_each_cell(area.zone, [&](Cell at) {
-      const int zone = area.zone(at.row, at.col);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Eigen::ArrayXXi& zones = change.areas[i].zone;
+    const Gradient before = gradient_of(pairs[i]->before.height);
+    const Gradient after = gradient_of(pairs[i]->after.height);
+    for_each_cell(zones, [&](Cell at) {
+      const int zone = zones(at.row, at.col);
       if (zone < 0 || change.zones[static_cast<std::size_t>(zone)].kind != kind) return;
-      const double slope = std::hypot(gradient.x(at.row, at.col), gradient.y(at.row, at.col));
+      const double slope = std::max(std::hypot(before.x(at.row, at.col), before.y(at.row, at.col)),
+                                    std::hypot(after.x(at.row, at.col), after.y(at.row, at.col)));
       if (!std::isnan(slope)) slopes.push_back(slope);
     });
   }
@@ -254,25 +260,6 @@ double lost_beside_heap(const VolumeChange& change) {
     }
   }
   return lost;
-}
-
-std::optional<Warning> exchanged(const VolumeChange& change) {
-  constexpr double loose = 1.19;       // ours: tan 50 degrees; loose soil stands at 28 to 45
-  constexpr double gentle = 1.0;       // ours: tan 45 degrees
-  constexpr double steeper = 1.1;      // ours
-  constexpr double least_lost = 0.03;  // ours, of the hole
-  const double heap = steepness(change, ZoneKind::dump);
-  const double hole = steepness(change, ZoneKind::dig);
-  const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
-  if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
-  return Warning{
-      WarningCode::looks_swapped,
-      "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
-          degrees(std::atan(hole)) + (lost ? ", and ground beside the heap fell" : "") +
-          ", as if hole and heap were exchanged: check the order of BEFORE and AFTER, and if z "
-          "points down, " +
-          give_frames,
-      true};
 }
 
 }  // namespace
@@ -635,8 +622,27 @@ std::vector<Warning> check_volumes(const VolumeChange& change, double unit) {
   auto units = is_dig ? doubt_of_volume(change.excavated.value, "a hole", unit)
                       : doubt_of_volume(change.dumped.value, "a heap", unit);
   if (units) found.push_back(std::move(*units));
-  if (auto warning = exchanged(change)) found.push_back(std::move(*warning));
   return found;
+}
+
+std::vector<Warning> check_slopes(const std::vector<const SurfacePair*>& pairs,
+                                  const VolumeChange& change) {
+  constexpr double loose = 1.19;       // ours: tan 50 degrees; loose soil stands at 28 to 45
+  constexpr double gentle = 1.0;       // ours: tan 45 degrees
+  constexpr double steeper = 1.1;      // ours
+  constexpr double least_lost = 0.03;  // ours, of the hole
+  const double heap = steepness(pairs, change, ZoneKind::dump);
+  const double hole = steepness(pairs, change, ZoneKind::dig);
+  const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
+  if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return {};
+  return {
+      {WarningCode::looks_swapped,
+       "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
+           degrees(std::atan(hole)) + (lost ? ", and ground beside the heap fell" : "") +
+           ", as if hole and heap were exchanged: check the order of BEFORE and AFTER, and if z "
+           "points down, " +
+           give_frames,
+       true}};
 }
 
 void refuse_swapped(const VolumeChange& change, const std::string& names, double unit) {

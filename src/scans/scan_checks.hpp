@@ -51,10 +51,15 @@ std::vector<Warning> check_points(const std::vector<const SurfacePair*>& pairs,
 /// Of ground that is bent like a ball about the sensor.
 std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area);
 
-/// Code `units`: a hole that no bucket digs. Code `looks_swapped`: a heap steeper than loose soil
-/// stands and a gentle hole, or a heap steeper than the hole and a loss beside it. Both end trust.
+/// Code `units`: a hole that no bucket digs; ends trust.
 /// @param unit  of the coordinates in the scans [m]
 std::vector<Warning> check_volumes(const VolumeChange& change, double unit);
+
+/// Code `looks_swapped`: a heap steeper than loose soil stands and a gentle hole, or a heap steeper
+/// than the hole and a loss beside it. Ends trust.
+/// @param pairs  of each area of the change
+std::vector<Warning> check_slopes(const std::vector<const SurfacePair*>& pairs,
+                                  const VolumeChange& change);
 
 /// @throws Error (bad_file) naming the scans if they look swapped, or those of the dump area do,
 ///         alone or with those of the dig area

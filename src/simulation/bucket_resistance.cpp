@@ -18,8 +18,9 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
-constexpr double slope_reach = 0.30;  // the surface's slope is taken over this ahead of the lip [m]
-constexpr int heel_samples = 12;      // of the outline behind the lip
+// The surface's slope is taken over this ahead of the lip, or as far as the lip is deep [m].
+constexpr double slope_reach = 0.30;
+constexpr int heel_samples = 12;  // of the outline behind the lip
 constexpr double bearing_settlement =
     0.1;  // of its width, at which a footing has its full capacity
 
@@ -141,7 +142,8 @@ Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double f
   place.climb = std::atan2(place.motion.y(), -place.motion.x());
   place.floor = s.at.phi3 + pi - model_.machine.beta();
   const Vector2d up = model_.machine.up();
-  place.slope = surface_slope(place.col) - std::atan2(up.x(), up.y());
+  const double depth = surface_at(place.col) - place.tip.y();
+  place.slope = surface_slope(place.col, depth) - std::atan2(up.x(), up.y());
   place.soil = soil_above(place.col, place.tip.y());
   // The penetration moves along the floor by definition: no wedge is pushed, the lip is driven in.
   Resistance r =
@@ -170,7 +172,7 @@ Resistance BucketResistance::drive_in(const Place& place) {
   CutSoil cut = place.soil;
   cut.loose_depth = depth - cut.bank_depth;
   const double along =
-      std::sin(place.floor) + std::tan(surface_slope(place.col)) * std::cos(place.floor);
+      std::sin(place.floor) + std::tan(surface_slope(place.col, 0.0)) * std::cos(place.floor);
   const double driven = depth / std::max(1e-3, along);
   const double buried = std::min(driven, floor_length());
   const double plates = 2.0 * buried * model_.machine.bucket.width_outside +
@@ -529,8 +531,11 @@ SoilState BucketResistance::mean_loose(Index col) const {
 }
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.
-double BucketResistance::surface_slope(Index col) {
-  const auto reach = std::max<Index>(1, std::lround(slope_reach / ground_.cell_size()));
+/// Of the surface over the wedge that a lip at this depth pushes: over less, the flank of a pile
+/// that the wedge reaches beyond would pass for its whole top.
+double BucketResistance::surface_slope(Index col, double depth) {
+  const double length = depth > slope_reach ? depth : slope_reach;
+  const auto reach = std::max<Index>(1, std::lround(length / ground_.cell_size()));
   const Index ahead = std::max<Index>(0, col - reach);
   if (ahead == col) return 0.0;
   const double rise = surface_at(ahead) - surface_at(col);

@@ -113,7 +113,7 @@ class BucketResistance {
   CutSoil soil_above(Eigen::Index col, double z);
   SoilState mean_bank(Eigen::Index col) const;
   SoilState mean_loose(Eigen::Index col) const;
-  double surface_slope(Eigen::Index col);
+  double surface_slope(Eigen::Index col, double depth);
   double penetrating_area(double driven, double depth, const SoilState& soil) const;
   double driving_force(const CutSoil& cut, double driven) const;
   double edge_force(const CutSoil& cut, double climb) const;

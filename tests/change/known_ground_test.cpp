@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/change/known_ground.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -120,6 +121,20 @@ TEST(KnownGround, GroundWithoutLooseSoilIsAsUnknownGround) {
   EXPECT_EQ(change.cut->bank_share(), 1.0);
 }
 
+TEST(KnownGround, ADigThatLeftNoHoleEndsTrust) {
+  const Trench trench;
+  const SurfacePair dug = trench.scene(0.003, 4);
+  const SurfacePair still = {dug.before, trench.scene(0.003, 5).before, {}};
+  const auto ends_trust = [](const VolumeChange& change) {
+    return std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& each) {
+      return each.code == WarningCode::no_hole_found && each.ends_trust;
+    });
+  };
+  EXPECT_TRUE(ends_trust(measure_change(still, trench.known(dug.before.height, false))));
+  EXPECT_FALSE(ends_trust(measure_change(dug, trench.known(dug.before.height, false))));
+  EXPECT_FALSE(ends_trust(measure_change(still))) << "nobody says that there was a dig";
+}
+
 TEST(KnownGround, ALayerOfAnotherSizeIsRefused) {
   const Trench trench;
   const SurfacePair scene = trench.scene(0.003, 1);
@@ -157,6 +172,22 @@ TEST(UpdatedGround, WhatDidNotChangeIsTheMeanOfLeastVariance) {
   EXPECT_EQ(after.terrain.loose(0, 0), 0.1);
   EXPECT_NEAR(after.deviation(0, 0), 0.01 / std::sqrt(2.0), 1e-9);
   EXPECT_EQ(after.seen(0, 0), 200.0);
+}
+
+TEST(UpdatedGround, ASurveyBetweenTheCellsIsNotMoved) {
+  const auto sloping = [](double offset) {
+    HeightMap map = flat_ground({offset, offset, 2.0 + offset, 2.0 + offset}, 0.05);
+    for (Eigen::Index col = 0; col < map.z.cols(); ++col) map.z.col(col).setConstant(map.x(col));
+    return map;
+  };
+  const HeightMap truth = sloping(0.0);
+  GroundState unknown;
+  unknown.terrain = undisturbed(truth);
+  unknown.terrain.bank.z.setConstant(nan);
+  SeenGround seen;
+  seen.surface = sloping(0.017);
+  const HeightMap& bank = updated_ground(unknown, seen).terrain.bank;
+  EXPECT_LT((bank.z - truth.z).block(1, 1, 38, 38).abs().maxCoeff(), 1e-9);
 }
 
 TEST(UpdatedGround, TheErrorThatASurveySharesStays) {

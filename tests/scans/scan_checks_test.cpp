@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -96,33 +97,51 @@ TEST(ScanChecks, NoBadSurveyIsTrustedAndWrong) {
   }
 }
 
-/// A pit and a heap with flanks of these angles, as deep as high.
-VolumeChange pit_and_heap(double pit_angle, double heap_angle) {
-  constexpr double height = 0.5;
-  const HeightMap before = flat_ground({-3.0, -2.0, 3.0, 2.0}, 0.05);
-  HeightMap after = before;
-  for (Eigen::Index col = 0; col < after.z.cols(); ++col) {
-    for (Eigen::Index row = 0; row < after.z.rows(); ++row) {
-      const auto inside = [&](double x) {
-        return 0.8 - std::hypot(before.x(col) - x, before.y(row));
-      };
-      after.z(row, col) += std::clamp(std::tan(heap_angle) * inside(1.5), 0.0, height) -
-                           std::clamp(std::tan(pit_angle) * inside(-1.5), 0.0, height);
+using Heights = std::function<double(double, double)>;
+
+bool looks_swapped(const Heights& before, const Heights& after) {
+  SurfacePair pair;
+  pair.before.height = pair.after.height = flat_ground({-3.0, -2.0, 3.0, 2.0}, 0.05);
+  for (const auto& [map, heights] :
+       {std::pair(&pair.before.height, &before), std::pair(&pair.after.height, &after)}) {
+    for (Eigen::Index col = 0; col < map->z.cols(); ++col) {
+      for (Eigen::Index row = 0; row < map->z.rows(); ++row)
+        map->z(row, col) = (*heights)(map->x(col), map->y(row));
     }
   }
-  return measure_change(before, after);
+  const std::vector<Warning> doubts = check_slopes({&pair}, measure_change(pair));
+  return std::any_of(doubts.begin(), doubts.end(), [](const Warning& warning) {
+    return warning.code == WarningCode::looks_swapped;
+  });
+}
+
+/// A cone with its point cut off.
+double heap(const Eigen::Vector2d& from_centre, double angle, double height) {
+  return std::clamp(std::tan(angle) * (0.8 - from_centre.norm()), 0.0, height);
 }
 
 TEST(ScanChecks, ASteepHeapIsOneOfExchangedScansOnlyBesideAGentleHole) {
-  const auto looks_swapped = [](double pit_angle, double heap_angle) {
-    const std::vector<Warning> doubts = check_volumes(pit_and_heap(pit_angle, heap_angle), 1.0);
-    return std::any_of(doubts.begin(), doubts.end(), [](const Warning& warning) {
-      return warning.code == WarningCode::looks_swapped;
-    });
+  const auto pit_and_heap = [](double pit_angle, double heap_angle) {
+    return looks_swapped(
+        [](double, double) { return 0.0; },
+        [&](double x, double y) {
+          return heap({x - 1.5, y}, heap_angle, 0.5) - heap({x + 1.5, y}, pit_angle, 0.5);
+        });
   };
-  EXPECT_TRUE(looks_swapped(35.0 * degree, 65.0 * degree));
-  EXPECT_FALSE(looks_swapped(65.0 * degree, 35.0 * degree));
-  EXPECT_FALSE(looks_swapped(60.0 * degree, 60.0 * degree)) << "soil that holds together";
+  EXPECT_TRUE(pit_and_heap(35.0 * degree, 65.0 * degree));
+  EXPECT_FALSE(pit_and_heap(65.0 * degree, 35.0 * degree));
+  EXPECT_FALSE(pit_and_heap(60.0 * degree, 60.0 * degree)) << "soil that holds together";
+}
+
+TEST(ScanChecks, AHeapBetweenEarlierOnesIsASteepChangeAndNoSteepHeap) {
+  constexpr double repose = 35.0 * degree;
+  const auto earlier = [](double x, double y) {
+    return std::max(heap({x - 1.5, y - 0.75}, repose, 0.5), heap({x - 1.5, y + 0.75}, repose, 0.5));
+  };
+  EXPECT_FALSE(looks_swapped(earlier, [&](double x, double y) {
+    return std::max(earlier(x, y), heap({x - 1.5, y}, repose, 0.5)) -
+           heap({x + 1.5, y}, 40.0 * degree, 0.3);
+  }));
 }
 
 TEST(ScanChecks, GoodSurveysPass) {

@@ -219,6 +219,24 @@ TEST_F(MapGround, AHeelCompactsTheLooseSoilThatItStandsOn) {
               1e-12 * result.soil.solids_before);
 }
 
+/// The flank of a pile falls at repose, but the wedge before a deep lip reaches beyond its foot.
+TEST_F(MapGround, SoilThatIsPushedThroughALowPileIsNotStrewnOverMetres) {
+  for (const double middle : {4.9, 5.2, 5.5}) {
+    Terrain ground = level_planning_ground(machine_);
+    for (Eigen::Index col = 0; col < ground.loose.cols(); ++col) {
+      const double beside = std::abs(ground.bank.x(col) - middle);
+      ground.loose.col(col).setConstant(std::max(0.0, 0.25 - 0.7 * beside));
+    }
+    const DigPath path = path_on(ground, {1.0, 0.6, 1.5}, 6.8).value();
+    const DigResult dug = HeightMapSimulator(machine_, soil_kind("loam"), 10.0).dig(ground, path);
+    const Eigen::ArrayXXd rise = dug.after(ground).surface().z - ground.surface().z;
+    const double foot = path.poses.back().bucket.x - 1.0;
+    for (Eigen::Index col = 0; ground.bank.x(col) < foot; ++col) {
+      ASSERT_LT(rise.col(col).maxCoeff(), 0.01) << middle << ", at " << ground.bank.x(col) << " m";
+    }
+  }
+}
+
 TEST_F(MapGround, TracksCompactWhatLiesUnderThem) {
   const SoilKind soil = soil_kind("loam");
   Terrain ground = covered(0.4);

@@ -55,7 +55,7 @@ struct AlignmentOptions {
   double turn_prior = 0.0052360;  ///< sd of each rotation (0.3 degrees) [rad], > 0
   double steepest = 1.0;  ///< cells of a larger gradient (walls, edges) are not used [-], > 0
   /// Of ground that was known: where the machine worked. Not used, nor is ground about a change;
-  /// shift and turn in plan then need relief that agrees on all sides
+  /// shift and turn in plan then need pieces of relief that agree on all sides
   /// (`docs/methods.md#known-ground`).
   std::optional<Rectangle> left_out = {};
 };
