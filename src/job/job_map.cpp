@@ -20,7 +20,8 @@ using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_share = 0.5;  // of a cell that is one of the design
+constexpr double unclear_margin = 0.05;  // beside walls, whose points fall on the floor; ours [m]
+constexpr double least_share = 0.5;      // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
 bool holds(const SitePolygon& polygon, const Vector2d& place) {
@@ -78,6 +79,7 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   const DesignCover cover = cover_of(settings.surface, ground);
   map.target.z = (cover.share >= least_share).select(cover.height, std::nan("")).eval();
   map.counts = counting(map.target, design.edge_margin);
+  map.clear = counting(map.target, design.edge_margin + unclear_margin);
   map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
   for (const DumpArea& area : design.dump_areas) {
     for_each_inside(area.polygon, ground, [&](Cell at) { map.dump(at.row, at.col) = true; });

@@ -41,7 +41,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
       surface_(ground_.terrain().surface()),
       target_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), nan)),
       dump_(Mask::Constant(surface_.z.rows(), surface_.z.cols(), false)),
-      counts_(dump_),
+      clear_(dump_),
       forbidden_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), -infinity)) {
   for_each_cell(target_, [&](Cell at) {
     const Eigen::Vector2d place = line.place(surface_.x(at.col), surface_.y(at.row));
@@ -49,7 +49,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
     if (!cell) return;
     target_(at.row, at.col) = job.target.z(cell->row, cell->col) - line.z;
     dump_(at.row, at.col) = job.dump(cell->row, cell->col);
-    counts_(at.row, at.col) = job.counts(cell->row, cell->col);
+    clear_(at.row, at.col) = job.clear(cell->row, cell->col);
     forbidden_(at.row, at.col) = job.forbidden(cell->row, cell->col) - line.z;
   });
   look_under_bucket(bucket_width);
@@ -77,7 +77,7 @@ void LaneView::look_under_bucket(double bucket_width) {
       if (std::isnan(z)) continue;
       sum += z;
       ++known;
-      if (counts_(row, col)) highest_error_(col) = std::max(highest_error_(col), z - target);
+      if (clear_(row, col)) highest_error_(col) = std::max(highest_error_(col), z - target);
     }
     ground_at_(col) = 2 * known > end_row_ - first_row_ ? sum / known : nan;
     floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
@@ -117,10 +117,13 @@ ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
       if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
       return;
     }
-    if (counts_(cell.row, cell.col)) {
+    if (clear_(cell.row, cell.col)) {
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -
                                std::max(0.0, std::abs(after - target) - slack));
     }
+    change.cleared += clear_(cell.row, cell.col)
+                          ? area * (std::max(0.0, before - target) - std::max(0.0, after - target))
+                          : 0.0;
     change.gained += area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.too_deep +=
         area * (std::max(0.0, target - slack - after) - std::max(0.0, target - slack - before));

@@ -16,6 +16,7 @@ namespace excavplan {
 /// How the surface of a view changed.
 struct ShapeChange {
   double shaped = 0.0;    ///< less that is out of tolerance, of what counts [m^3]
+  double cleared = 0.0;   ///< of what lies above the design where it can be told [m^3]
   double gained = 0.0;    ///< of what lies above the design [m^3]
   double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
   double spilled = 0.0;   ///< risen beside the design and the dump areas [m^3]
@@ -53,7 +54,7 @@ class LaneView {
   HeightMap surface_;
   Eigen::ArrayXXd target_;  ///< in the view, NaN beside the design
   Mask dump_;
-  Mask counts_;
+  Mask clear_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
   Eigen::ArrayXd floor_, ground_at_, highest_error_;

@@ -135,7 +135,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
 
   const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
   const ShapeChange& change = dig->change;
-  const double shaped = std::max(change.shaped, least_shaped / least_cleared * change.gained);
+  const double shaped = std::max(change.shaped, least_shaped / least_cleared * change.cleared);
   if ((finishing ? shaped : change.gained) < least) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = frame.heading - record.base.heading;
@@ -164,8 +164,8 @@ bool SiteJob::State::wants_passes() const {
   const Terrain& now = ground.expected();
   int count = 0;
   int high = 0;
-  for_each_cell(map.counts, [&](Cell cell) {
-    if (!map.counts(cell.row, cell.col)) return;
+  for_each_cell(map.clear, [&](Cell cell) {
+    if (!map.clear(cell.row, cell.col)) return;
     const Eigen::Vector2d place = frame.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
     if (place.x() < range.near || place.x() > range.far) return;
     if (place.y() < lanes.front() - at.y() - half || place.y() > lanes.back() - at.y() + half)

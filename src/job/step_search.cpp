@@ -232,7 +232,7 @@ class StepSearch {
     step.dig = found->dig;
     step.result = std::move(found->result);
     step.change = view.change(step.result.patch, task_.slack);
-    const double shaped = std::max(step.change.shaped, cleared_worth * step.change.gained);
+    const double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
     const double gain = (task_.finishing ? shaped : step.change.gained) -
                         too_deep_price * step.change.too_deep - spill_price * step.change.spilled;
     if (!(gain > 0.0)) return std::nullopt;
