@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t least_cells = 40;  // of a cut that tells its height
 constexpr double least_cut = 0.01;       // of a cell that was cut [m]
 constexpr double cleanest = 0.005;       // loose soil on it, at most [m]
+constexpr double steeper = 0.98;         // than the angle of repose by its tangent
 constexpr double most_off = 0.1;         // more is no error of tracking [m]
 
 std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
@@ -35,6 +36,24 @@ std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
   });
   if (off.size() < least_cells) return std::nullopt;
   return median(off);
+}
+
+/// Loose soil lies no steeper than it can: what a scan shows as steeper, beside walls whose points
+/// fall on both levels and where noise stands for relief, is held as if it were undisturbed, or all
+/// of it would slide in the next simulated dig.
+void hold_steep(const SoilKind& soil, Terrain& ground) {
+  const double step = steeper * std::tan(soil.angle_of_repose) * ground.bank.cell_size;
+  const Eigen::ArrayXXd top = ground.bank.z + ground.loose;
+  for_each_cell(top, [&](Cell at) {
+    if (!(ground.loose(at.row, at.col) > 0.0)) return;
+    bool is_steep = false;
+    for_each_neighbour(top, at, [&](Cell next) {
+      is_steep |= top(at.row, at.col) - top(next.row, next.col) > step;
+    });
+    if (!is_steep) return;
+    ground.bank.z(at.row, at.col) += ground.loose(at.row, at.col);
+    ground.loose(at.row, at.col) = 0.0;
+  });
 }
 
 /// Where a scan did not see what was dug, it is as foretold.
@@ -78,6 +97,7 @@ std::optional<double> JobGround::take_in(const SiteEvent& event) {
   scanned_ = site_.ground().terrain;
   scanned_.doubts.clear();
   keep_unseen(expected, site_.ground().seen, event.time, scanned_);
+  hold_steep(settings_.site.soil, scanned_);
   expected_ = scanned_;
   unseen_.clear();
   return update.taken ? cut_above(expected, before, scanned_) : std::nullopt;
