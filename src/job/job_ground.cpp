@@ -94,6 +94,7 @@ std::optional<double> JobGround::take_in(const SiteEvent& event) {
   const Terrain expected = std::move(expected_);
   const Terrain before = std::move(scanned_);
   const SiteUpdate update = site_.update(event);
+  warnings_ = update.warnings;
   scanned_ = site_.ground().terrain;
   scanned_.doubts.clear();
   keep_unseen(expected, site_.ground().seen, event.time, scanned_);
@@ -116,6 +117,7 @@ void JobGround::save(long long number) const {
 }
 
 void JobGround::load(long long number) {
+  if (site_.updates() > number) site_.undo();
   scanned_ = load_ground(file_of(number)).terrain;
   expected_ = scanned_;
   unseen_.clear();

@@ -37,8 +37,11 @@ class JobGround {
 
   /// Writes the ground at the last scan. @param number  of the site's updates
   void save(long long number) const;
-  /// Goes on from what was written at that scan.
+  /// Goes on from what was written at that scan. A later one of the site, whose job was not written
+  /// any more, is taken back.
   void load(long long number);
+  /// Of the last scan taken in.
+  const std::vector<Warning>& warnings() const { return warnings_; }
 
  private:
   std::string file_of(long long number) const;
@@ -49,6 +52,7 @@ class JobGround {
   Terrain scanned_;   ///< at the last scan
   Terrain expected_;  ///< with what was dug since
   std::vector<JobStep> unseen_;
+  std::vector<Warning> warnings_;
 };
 
 }  // namespace excavplan

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 
@@ -197,10 +198,9 @@ void for_each_number(Record& record, Visit visit) {
 }
 
 std::string path_of(const std::string& folder) { return folder + "/" + job_file; }
+std::string earlier_path(const std::string& folder) { return folder + "/job-before.json"; }
 
-}  // namespace
-
-void save_record(const std::string& folder, const JobRecord& record) {
+Json record_json(const JobRecord& record) {
   Json json = {{"format", format},
                {"version", version},
                {"station", record.station},
@@ -218,11 +218,10 @@ void save_record(const std::string& folder, const JobRecord& record) {
   for (const JobStep& dig : record.unseen) {
     json["unseen"].push_back(step_json(dig));
   }
-  write_own_file(path_of(folder), sealed_text(json));
+  return json;
 }
 
-JobRecord load_record(const std::string& folder) {
-  const std::string path = path_of(folder);
+JobRecord read_record(const std::string& path) {
   JsonObject object = JsonObject::open_sealed(path, read_own_file(path), format, version);
   JobRecord record;
   record.station = static_cast<std::size_t>(object.number("station", 0, 1e6));
@@ -243,6 +242,27 @@ JobRecord load_record(const std::string& folder) {
     record.unseen.push_back(read_step(std::move(each)));
   }
   object.done();
+  return record;
+}
+
+}  // namespace
+
+void save_record(const std::string& folder, const JobRecord& record) {
+  write_own_file(path_of(folder), sealed_text(record_json(record)));
+}
+
+JobRecord load_record(const std::string& folder) { return read_record(path_of(folder)); }
+
+void save_earlier_record(const std::string& folder, const JobRecord& record) {
+  write_own_file(earlier_path(folder), sealed_text(record_json(record)));
+}
+
+JobRecord earlier_record(const std::string& folder) {
+  const std::string path = earlier_path(folder);
+  require(std::filesystem::exists(path), folder + ": there is no step to take back");
+  JobRecord record = read_record(path);
+  save_record(folder, record);
+  std::filesystem::remove(path);
   return record;
 }
 

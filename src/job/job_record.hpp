@@ -46,4 +46,9 @@ void save_record(const std::string& folder, const JobRecord& record);
 JobRecord load_record(const std::string& folder);
 bool holds_record(const std::string& folder);
 
+/// That of before the last change, for SiteJob::undo().
+void save_earlier_record(const std::string& folder, const JobRecord& record);
+/// Makes it the present one. @throws Error (bad_input) if there is none
+JobRecord earlier_record(const std::string& folder);
+
 }  // namespace excavplan

@@ -90,6 +90,8 @@ struct SiteJob::State {
   void end_dig(const JobStep& step, const StepReport& report);
   void take_scan(const StepReport& report);
   void save();
+  void save_changed(const JobRecord& before);
+  void restore();
   std::string first_file() const { return folder + "/job-first-ground.tif"; }
 
   std::string folder;
@@ -262,6 +264,17 @@ void SiteJob::State::save() {
   save_record(folder, record);
 }
 
+void SiteJob::State::save_changed(const JobRecord& before) {
+  save_earlier_record(folder, before);
+  save();
+}
+
+/// The ground of the record.
+void SiteJob::State::restore() {
+  ground.load(record.site_updates);
+  for (const JobStep& dig : record.unseen) ground.expect(dig, record.learning.height_bias.mean);
+}
+
 SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SiteJob::~SiteJob() = default;
 SiteJob::SiteJob(SiteJob&&) noexcept = default;
@@ -299,10 +312,7 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
   state->record = load_record(folder);
   state->first = load_ground(state->first_file()).terrain;
   state->look_at_design();
-  state->ground.load(state->record.site_updates);
-  for (const JobStep& dig : state->record.unseen) {
-    state->ground.expect(dig, state->record.learning.height_bias.mean);
-  }
+  state->restore();
   return SiteJob(std::move(state));
 }
 
@@ -318,9 +328,32 @@ JobStep SiteJob::next() {
 void SiteJob::done(long long step, const StepReport& report) {
   const std::optional<JobStep>& present = state_->record.present;
   if (!present || present->id != step || present->what == JobAction::stop) return;
+  const JobRecord before = state_->record;
   state_->end_step(report);
-  state_->save();
+  state_->save_changed(before);
 }
+
+void SiteJob::look(const Scan& scan, double time) {
+  JobRecord& record = state_->record;
+  const JobRecord before = record;
+  StepReport report;
+  report.scan = scan;
+  report.time = time;
+  state_->take_scan(report);
+  if (record.present && record.present->what != JobAction::move) {
+    record.last_step = record.present->id;
+    record.present.reset();
+    record.planned.reset();
+  }
+  state_->save_changed(before);
+}
+
+void SiteJob::undo() {
+  state_->record = earlier_record(state_->folder);
+  state_->restore();
+}
+
+const std::vector<Warning>& SiteJob::scan_warnings() const { return state_->ground.warnings(); }
 
 JobProgress SiteJob::progress() const {
   const JobRecord& record = state_->record;

@@ -184,6 +184,20 @@ double turns_to(const Machine& machine, const CycleWayOptions& options) {
   return 2.0 * pi * std::round((*options.start)[3] / (2.0 * pi));
 }
 
+/// The full bucket over its dump.
+JointAngles over_dump(const Machine& machine, const JointAngles& clear, double height,
+                      const std::optional<double>& radius) {
+  const JointAngles straight = raised(machine, clear, height);
+  if (!radius) return straight;
+  const Eigen::Vector2d pin = link_positions(machine, clear).bucket_pin;
+  BucketPose bucket = forward_kinematics(machine, clear);
+  bucket.x += *radius - pin.x();
+  bucket.z += height - pin.y();
+  const auto there = inverse_kinematics(machine, bucket);
+  const auto* joints = std::get_if<JointAngles>(&there);
+  return joints != nullptr ? *joints : straight;
+}
+
 FrontJoints with_swing(const JointAngles& joints, double swing) {
   FrontJoints all;
   all << joints, swing;
@@ -200,6 +214,7 @@ void check(const Machine& machine, const CycleWayOptions& options) {
                std::min(widest_swing, swing.upper));
     require_in("cycle: dump_height [m]", options.cycle.dump_height, 0.0, 1e9);
   }
+  if (options.dump_radius) require_in("cycle: dump radius [m]", *options.dump_radius, 0.0, 100.0);
   const bool swings = options.whole_cycle || (options.start && (*options.start)[3] != 0.0);
   require(!swings || machine.swing.has_value(),
           "the file of machine " + machine.name + " has no swing, which the way needs");
@@ -227,7 +242,8 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
     way.dig_is_done();
     const JointAngles clear = way.joints().head<3>();
     const double height = std::max(options.cycle.dump_height, pin_height(machine, clear));
-    const JointAngles full = raised(machine, clear, height), open = opened(machine, full);
+    const JointAngles full = over_dump(machine, clear, height, options.dump_radius);
+    const JointAngles open = opened(machine, full);
     const double swing = ahead + options.cycle.swing;
     if (auto stop = way.go(DigPhase::swing, with_swing(full, swing), true)) return *stop;
     if (auto stop = way.go(DigPhase::dump, with_swing(open, swing), false)) return *stop;

@@ -5,6 +5,7 @@
 #include "base/json.hpp"
 #include "results/density_results.hpp"
 #include "results/efficiency_results.hpp"
+#include "results/job_results.hpp"
 #include "results/plan_results.hpp"
 #include "results/scan_results.hpp"
 #include "results/scene_results.hpp"
@@ -36,6 +37,10 @@ std::string to_json(const CloudSummary& summary) { return json_text(cloud_json(s
 std::string to_json(const std::string& file, const RecordingContents& contents) {
   return json_text(recording_json(file, contents));
 }
+
+std::string to_json(const JobStep& step) { return json_text(job_step_json(step)); }
+
+std::string to_json(const JobProgress& progress) { return json_text(progress_json(progress)); }
 
 std::string to_json(const SurveyPlan& plan, const SurveyForecast& forecast,
                     const SurveyNeeds& needs, double target_sd_percent) {

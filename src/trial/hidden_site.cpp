@@ -72,31 +72,6 @@ SiteSensor sensor_of(JsonObject site) {
   return sensor;
 }
 
-SiteBrief read_brief(const std::string& folder) {
-  const std::string path = folder + "/site.json";
-  SiteBrief brief;
-  brief.job = read_plain_site(path);
-  JsonObject site = opened(path);
-  brief.soil = nominal_soil(site.object("soil"));
-  brief.sensor = sensor_of(site.object("sensor"));
-  if (site.states("machine")) brief.machine = site.object("machine").text("class");
-  if (site.states("prior")) {
-    JsonObject prior = site.object("prior");
-    brief.density = {prior.number("density_mean_percent", 0.0, 100.0),
-                     prior.number("density_sd_percent", 0.0, 100.0)};
-  }
-  if (!brief.job.start) site.fail("start_pose", "is not there, must be x, y and heading_rad");
-  if (brief.job.scan_file.empty()) site.fail("files", "must name a first_scan");
-  if (!brief.job.design_file.empty()) {
-    brief.design = read_design(brief.job.design_file);
-  } else if (brief.job.words) {
-    brief.design = design_of_words(*brief.job.words, read_ascii_grid(brief.job.scan_file));
-  } else {
-    site.fail("design", "is not there, must be words or files.design");
-  }
-  return brief;
-}
-
 /// The ground on finer cells.
 HeightMap refined(const HeightMap& coarse, double cell_size) {
   HeightMap fine = flat_ground(coarse.extent(), cell_size);
@@ -155,10 +130,34 @@ void set_void_ratios(const DensityField& density, const SoilKind& soil, Terrain&
   });
 }
 
+SiteBrief read_site_brief(const std::string& path) {
+  SiteBrief brief;
+  brief.job = read_plain_site(path);
+  JsonObject site = opened(path);
+  brief.soil = nominal_soil(site.object("soil"));
+  brief.sensor = sensor_of(site.object("sensor"));
+  if (site.states("machine")) brief.machine = site.object("machine").text("class");
+  if (site.states("prior")) {
+    JsonObject prior = site.object("prior");
+    brief.density = {prior.number("density_mean_percent", 0.0, 100.0),
+                     prior.number("density_sd_percent", 0.0, 100.0)};
+  }
+  if (!brief.job.start) site.fail("start_pose", "is not there, must be x, y and heading_rad");
+  if (brief.job.scan_file.empty()) site.fail("files", "must name a first_scan");
+  if (!brief.job.design_file.empty()) {
+    brief.design = read_design(brief.job.design_file);
+  } else if (brief.job.words) {
+    brief.design = design_of_words(*brief.job.words, read_ascii_grid(brief.job.scan_file));
+  } else {
+    site.fail("design", "is not there, must be words or files.design");
+  }
+  return brief;
+}
+
 HiddenSite read_hidden_site(const std::string& folder, double cell_size) {
   require_in("true ground: cell size [m]", cell_size, 0.005, 0.25);
   HiddenSite site;
-  site.known = read_brief(folder);
+  site.known = read_site_brief(folder + "/site.json");
   site.first_scan = read_ascii_grid(site.known.job.scan_file);
   const HeightMap ground = read_ascii_grid(folder + "/hidden/ground.asc");
   site.density.percent = read_ascii_grid(folder + "/hidden/density.asc");

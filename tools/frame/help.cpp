@@ -73,6 +73,7 @@ std::string help_text(const About& about, const std::vector<Arguments::Entry>& e
       "Exit codes: 0 done; 1 internal error, or not enough memory; 2 wrong usage; 3 a file cannot "
       "be read or written, or has the wrong format or content, or a simulator fails";
   if (about.can_be_untrustworthy) codes += "; 4 result not trustworthy, with --strict";
+  if (!about.own_codes.empty()) codes += "; " + about.own_codes;
   if (about.can_stop_early) codes += "; 75 stopped early, can be resumed";
   return text + '\n' + wrapped(codes + ".", 0) + '\n';
 }

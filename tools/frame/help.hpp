@@ -20,6 +20,7 @@ struct About {
   std::vector<Example> examples;
   bool can_be_untrustworthy = false;  ///< adds --strict
   bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
+  std::string own_codes = {};         ///< exit codes of its own, "10 finished"
 };
 
 /// What --help prints.

@@ -230,7 +230,7 @@ int run(const CommandWords& command, const About& about,
   signals.end_at_closed_pipe();
   print_outcome(about, common, outcome, input);
   if (outcome.stopped_early) return 75;
-  return common.strict && !outcome.trustworthy ? 4 : 0;
+  return common.strict && !outcome.trustworthy ? 4 : outcome.exit_code;
 }
 
 /// Errors of a simulator begin with its name, or with its command until it has told one

@@ -46,6 +46,7 @@ struct Outcome {
   bool trustworthy = true;
   bool stopped_early = false;
   std::optional<Page> page = std::nullopt;  ///< written by run_tool()
+  int exit_code = 0;                        ///< About::own_codes
 };
 
 /// Runs a tool: parses, works, prints. @return the exit code @throws std::bad_alloc

@@ -56,6 +56,15 @@ class SiteJob : public JobPlanner {
 
   JobStep next() override;
   void done(long long step, const StepReport& report) override;
+  /// Takes in a scan that no step asked for. A step that is not done yet is then planned anew with
+  /// a new number, but for a move.
+  /// @param time  of it, since 1970-01-01 UTC [s] @throws Error as Site::update()
+  void look(const Scan& scan, double time);
+  /// Takes the last done() or look() back; of all of them the last is kept.
+  /// @throws Error (bad_input) if there is none
+  void undo();
+  /// Of the last scan that this object took in, such as scan_not_taken.
+  const std::vector<Warning>& scan_warnings() const;
 
   JobProgress progress() const;
   const Terrain& ground() const;  ///< as expected now: as scanned, and what was dug since

@@ -30,6 +30,9 @@ struct CycleWayOptions {
   std::optional<FrontJoints> start;
   bool whole_cycle = false;  ///< whether it goes on over swing, dump and back
   CycleOptions cycle = {};   ///< swing and dump height, if it does
+  /// Of the bucket pin from the swing axis where it dumps [m], if the front reaches it there;
+  /// nothing: as far as the boom alone brings it to the dump height.
+  std::optional<double> dump_radius = {};
 };
 
 /// Ground, or its own undercarriage, in the way of the machine.

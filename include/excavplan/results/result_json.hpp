@@ -8,6 +8,7 @@
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/efficiency/run_comparison.hpp>
+#include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/recording/recording.hpp>
 #include <excavplan/sensing/scene.hpp>
@@ -43,6 +44,10 @@ std::string to_json(const CloudSummary& summary);
 
 /// What inspect-cloud shows of a recording. @param file  its name
 std::string to_json(const std::string& file, const RecordingContents& contents);
+
+/// What plan-site asks of the machine, and how far its job has come.
+std::string to_json(const JobStep& step);
+std::string to_json(const JobProgress& progress);
 
 /// What a survey is expected to measure, and what it needs for an error of the density of so many
 /// points.

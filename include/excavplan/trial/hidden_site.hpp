@@ -77,6 +77,10 @@ struct HiddenSite {
 /// Edge of the cells of the truth; ours [m].
 inline constexpr double truth_cell = 0.025;
 
+/// Reads the description of a plain site, its design and the soil that it names.
+/// @throws Error (bad_file) naming file, key, value and rule
+SiteBrief read_site_brief(const std::string& path);
+
 /// Reads a plain site with its folder `hidden`.
 ///
 /// The strength of the true soil is that of the nominal one times `strength_factor`, in cohesion,

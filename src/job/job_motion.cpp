@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/job/job_motion.hpp>
+
+#include <cmath>
+#include <utility>
+
+#include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
+#include "job/job_map.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Swing of a lane from the direction of its line.
+double turn_at(double lane, double along) { return std::atan2(lane, along); }
+
+/// The path of a lane in the plane of the front, which reaches out to it.
+std::variant<DigPath, BlockedWay> reaching_out(const Machine& machine, DigPath path, double lane) {
+  for (std::vector<DigPose>* poses : {&path.approach, &path.poses}) {
+    for (DigPose& pose : *poses) {
+      pose.bucket.x = std::hypot(pose.bucket.x, lane);
+      const auto joints = inverse_kinematics(machine, pose.bucket);
+      if (const auto* found = std::get_if<JointAngles>(&joints)) {
+        pose.joints = *found;
+        continue;
+      }
+      BlockedWay stop;
+      stop.phase = pose.phase;
+      stop.place = {pose.bucket.x, 0.0, pose.bucket.z};
+      stop.message = std::string(name(pose.phase)) +
+                     ": the front does not reach x = " + readable(pose.bucket.x, 3) +
+                     " m, z = " + readable(pose.bucket.z, 3) + " m in its lane";
+      return stop;
+    }
+  }
+  return path;
+}
+
+/// The ground about a machine that has turned, with what stands on it by the design.
+Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLine& line) {
+  const Machine& machine = settings.site.machine;
+  Terrain view = GroundAlong(site, line, swing_extent(machine), usual_cell(machine)).terrain();
+  view.obstacles = Eigen::ArrayXXd::Constant(view.bank.z.rows(), view.bank.z.cols(), std::nan(""));
+  for_each_cell(view.bank.z, [&](Cell at) {
+    const Vector2d place = line.place(view.bank.x(at.col), view.bank.y(at.row));
+    double& top = view.obstacles(at.row, at.col);
+    const auto cell = cell_at(site.bank, place.x(), place.y());
+    if (cell && site.obstacles.size() > 0) top = site.obstacles(cell->row, cell->col) - line.z;
+    const double level = cell ? site.bank.z(cell->row, cell->col) - line.z : 0.0;
+    const auto stand = [&](const SitePolygon& polygon, double height) {
+      if (holds(polygon, place)) top = std::fmax(top, (std::isnan(level) ? 0.0 : level) + height);
+    };
+    for (const JobObstacle& each : settings.design.obstacles) stand(each.polygon, each.height);
+    if (settings.design.truck) stand(settings.design.truck->bed, settings.design.truck->bed_height);
+  });
+  return view;
+}
+
+/// Turns of the upper structure in a lane, from the direction in which the way was laid out [rad].
+struct LaneTurns {
+  double lane = 0.0;
+  double middle = 0.0;  ///< of the lane, from its line: the direction of the way
+  double first = 0.0;   ///< at the begin of the dig
+  double last = 0.0;    ///< at its end
+  double dump = 0.0;
+
+  double of(const Machine& machine, const WayPose& pose) const {
+    const double swing = pose.joints[3];
+    switch (pose.phase) {
+      case DigPhase::approach:
+        return first;
+      case DigPhase::penetrate:
+      case DigPhase::drag:
+      case DigPhase::scoop: {
+        const double reach = forward_kinematics(machine, pose.joints.head<3>()).x;
+        return std::asin(std::min(1.0, std::max(-1.0, lane / reach))) - middle;
+      }
+      case DigPhase::lift:
+        return last;
+      case DigPhase::swing:
+      case DigPhase::dump:
+        return last + swing * share(last);
+      case DigPhase::back:
+        return first + swing * share(first);
+    }
+    return swing;
+  }
+
+ private:
+  double share(double from) const { return dump != 0.0 ? (dump - from) / dump : 1.0; }
+};
+
+LaneTurns turns_of(const JobStep& step, const Vector2d& dump) {
+  LaneTurns turns;
+  turns.lane = step.lane;
+  const std::vector<DigPose>& poses = step.path.poses;
+  std::size_t end = poses.size() - 1;
+  while (end > 0 && poses[end].phase == DigPhase::lift) --end;
+  const double first = turn_at(step.lane, poses.front().bucket.x);
+  const double last = turn_at(step.lane, poses[end].bucket.x);
+  turns.middle = 0.5 * (first + last);
+  turns.first = first - turns.middle;
+  turns.last = last - turns.middle;
+  const double heading = step.base.heading + step.swung + turns.middle;
+  turns.dump = std::remainder(std::atan2(dump.y(), dump.x()) - heading, 2.0 * pi);
+  return turns;
+}
+
+/// What the dig loads the joints with, and the ground that it leaves, in the frame of the way.
+DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobStep& step,
+                const DigLine& turned) {
+  const Machine& machine = settings.site.machine;
+  const SoilKind& soil = settings.site.soil;
+  const HeightMapSimulator simulator(machine, soil, settings.density_percent);
+  const SoilVoids voids = soil_voids(soil, settings.density_percent);
+  const DigResult dig = dig_along(simulator, machine, ground,
+                                  dig_line(step.base, step.swung, step.lane), voids, step.path);
+  Terrain after = ground;
+  apply(dig.patch, after);
+  DigLoad load;
+  if (!dig.stall) load.torques = dig.torques;
+  load.payload_mass = std::max(dig.payload_mass, step.predicted.payload_mass);
+  load.ground_after =
+      GroundAlong(after, turned, swing_extent(machine), usual_cell(machine)).terrain().surface();
+  return load;
+}
+
+}  // namespace
+
+std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, const Terrain& ground,
+                                               const JobStep& step, const MotionOptions& options) {
+  const Machine machine = machine_for_planned_path(settings.site.machine);
+  Trajectory motion;
+  motion.machine = machine.name;
+  motion.robot_joints = machine.robot_joints;
+  if (step.path.poses.empty()) return motion;
+  auto path = reaching_out(machine, step.path, step.lane);
+  if (const auto* blocked = std::get_if<BlockedWay>(&path)) return *blocked;
+  const Vector2d dump = step.dump.head<2>() - Vector2d(step.base.x, step.base.y);
+  const LaneTurns turns = turns_of(step, dump);
+  const DigLine turned = dig_line(step.base, step.swung + turns.middle);
+
+  CycleWayOptions cycle;
+  cycle.whole_cycle = true;
+  cycle.cycle.swing = turns.dump;
+  cycle.cycle.dump_height = std::max(0.0, step.dump.z() - step.base.z);
+  cycle.dump_radius = dump.norm();
+  auto laid = way_of_cycle(machine, seen_along(settings, ground, turned), std::get<DigPath>(path),
+                           load_of(settings, ground, step, turned), cycle);
+  if (auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
+  Way& way = std::get<Way>(laid);
+  for (WayPose& pose : way.poses) {
+    pose.joints[3] = step.swung + turns.middle + turns.of(machine, pose);
+  }
+  motion = time_way(machine, way, options);
+  motion.warnings = way.warnings;
+  motion.plan = PlanStamp{checksum_text(fingerprint(machine) + to_csv(motion)),
+                          step.base.site_from_machine()};
+  return motion;
+}
+
+}  // namespace excavplan

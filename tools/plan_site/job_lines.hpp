@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/job/site_job.hpp>
+
+/// @file
+/// A job in lines of text.
+
+namespace excavplan::tools {
+
+std::vector<std::string> step_lines(const JobStep& step);
+std::vector<std::string> progress_lines(const JobProgress& progress);
+
+}  // namespace excavplan::tools

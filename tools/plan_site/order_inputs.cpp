@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_site/order_inputs.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/design/cut_and_fill.hpp>
+#include <excavplan/design/design_file.hpp>
+#include <excavplan/kit/kit_files.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/trial/hidden_site.hpp>
+
+#include "base/text.hpp"
+#include "inputs/named_kinds.hpp"
+#include "inputs/unit_inputs.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+constexpr double before_design = 1.5;  // of the tracks, where no base is told; ours [m]
+
+/// An error of a value then names its option.
+template <typename Work>
+auto of_option(const std::string& option, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.kind(), option + ": " + error.what());
+  }
+}
+
+void add_texts(Arguments& arguments, const char* name, const char* placeholder,
+               std::vector<std::string>& texts, const std::string& help) {
+  Arguments::Entry entry;
+  entry.name = name;
+  entry.placeholder = placeholder;
+  entry.help = help;
+  entry.repeated = true;
+  entry.assign = [&texts](const std::string& text) { texts.push_back(text); };
+  arguments.add(entry);
+}
+
+bool is_raster(const std::string& file) {
+  const std::string ending = small_letters(std::filesystem::path(file).extension().string());
+  return ending == ".asc" || ending == ".tif" || ending == ".tiff";
+}
+
+/// The ground as a scan shows it.
+Surface surface_of(const Scan& scan, double cell_size) {
+  const ScanOutline seen = outline(scan);
+  if (!seen.extent) {
+    throw Error(ErrorKind::bad_file, "--scan: " + scan.files.front() + " holds no finite point");
+  }
+  RasterOptions options;
+  options.cell_size = cell_size;
+  return survey_surface(scan, *seen.extent, options);
+}
+
+DesignWords words_of(const OrderInputs& inputs) {
+  DesignWords words = of_option("--trench", [&] { return trench_of_size(*inputs.trench); });
+  if (!inputs.from) usage_error("--from is missing: where the trench begins");
+  if (!inputs.heading) usage_error("--heading is missing: where the trench goes from there");
+  words.from = parse_point("--from", *inputs.from);
+  words.heading = *inputs.heading;
+  words.grade = inputs.grade;
+  words.batter = inputs.batter;
+  return words;
+}
+
+/// Where the machine stands when the job begins: as told, or before the trench.
+BasePose start_of(const OrderInputs& inputs, const Machine& machine) {
+  if (inputs.base) return parse_base(*inputs.base);
+  if (inputs.design) {
+    usage_error(
+        "--base is missing: where the machine stands, and in which heading it works, from the far "
+        "end of the design backwards");
+  }
+  const DesignWords words = words_of(inputs);
+  const double away = machine.track_front + before_design;
+  return {words.from.x() - away * std::cos(words.heading),
+          words.from.y() - away * std::sin(words.heading), 0.0, words.heading};
+}
+
+DesignSurface design_of(const OrderInputs& inputs, const Surface& ground) {
+  DesignSurface design;
+  if (inputs.trench) {
+    design = design_of_words(words_of(inputs), ground.height);
+  } else if (inputs.design) {
+    DesignFileOptions options;
+    options.surface = inputs.surface.value_or("");
+    design = read_design(*inputs.design, options);
+  } else {
+    usage_error("the design is missing: give --trench, --design or --site");
+  }
+  (void)cut_and_fill(design, ground);  // tells a design that does not lie on the scan
+  return design;
+}
+
+JobDesign job_of(const OrderInputs& inputs, const Machine& machine) {
+  JobDesign job;
+  job.tolerance = inputs.tolerance;
+  job.start = start_of(inputs, machine);
+  for (const auto& [texts, kind] : {std::pair(&inputs.windrows, DumpArea::Kind::windrow),
+                                    std::pair(&inputs.heaps, DumpArea::Kind::heap)}) {
+    const char* const option = kind == DumpArea::Kind::heap ? "--heap" : "--windrow";
+    for (const std::string& text : *texts) {
+      job.dump_areas.push_back({kind, of_option(option, [&] { return polygon_of_text(text); })});
+    }
+  }
+  for (const std::string& text : inputs.keep_out) {
+    job.keep_out.push_back(of_option("--keep-out", [&] { return keep_out_of_text(text); }));
+  }
+  if (inputs.truck) {
+    job.truck = of_option("--truck", [&] { return truck_of_text(*inputs.truck); });
+  }
+  if (job.dump_areas.empty() && !job.truck) {
+    usage_error("soil has no place to go: give --windrow, --heap or --truck");
+  }
+  return job;
+}
+
+/// A law of machine and soil: that of a kit, or the shipped one; empty if there is none.
+std::string law_path(const std::string& machine_word, const Machine& machine,
+                     const std::string& soil) {
+  if (const auto kit = kit_law(machine_word, machine, soil)) return *kit;
+  try {
+    return find_data_file(law_file(machine.name, soil));
+  } catch (const Error&) {
+    return {};  // solids are conserved: density_law_of()
+  }
+}
+
+Order finished(Order order, const std::string& machine_word) {
+  SiteSettings& site = order.settings.site;
+  order.files.machine = machine_path(machine_word);
+  order.files.law = law_path(machine_word, site.machine, site.soil.name);
+  site.law =
+      order.files.law.empty() ? density_law_of(site.soil) : load_density_law(order.files.law);
+  return order;
+}
+
+Order order_of_site(const std::string& path, std::optional<double> density) {
+  const SiteBrief brief = read_site_brief(path);
+  Order order;
+  order.settings.site.soil = brief.soil;
+  order.settings.site.machine = machine_named(brief.machine);
+  order.settings.design = brief.job;
+  order.settings.surface = brief.design;
+  order.settings.density_percent = density.value_or(brief.density.percent);
+  order.first.files = {brief.job.scan_file};
+  order.first.z_is_up = true;
+  return finished(std::move(order), brief.machine);
+}
+
+}  // namespace
+
+void declare_scan(Arguments& arguments, SiteScanInputs& inputs) {
+  arguments.text("scan", "FILE", inputs.scan,
+                 "scan of the ground in the site's frame: a cloud, a grid (.asc, .tif), or "
+                 "FILE:TOPIC@TIME+SPAN of a recording");
+  arguments.text("frame", "FRAME", inputs.frames.both,
+                 std::string("transforms the scan into the site's frame: ") + frame_forms);
+  declare_unit(arguments, "unit", inputs.frames.unit, "unit of the coordinates in the scan");
+  arguments.option("time", inputs.time, Quantity::time,
+                   "when it was scanned, since 1970-01-01 UTC (default: now)");
+}
+
+Scan scan_of(const SiteScanInputs& inputs) {
+  if (!inputs.scan) usage_error("--scan is missing: the ground as it is now");
+  ScanReport report;
+  Scan scan = placed_scan(*inputs.scan, inputs.frames, report);
+  if (is_raster(*inputs.scan)) scan.z_is_up = true;
+  return scan;
+}
+
+double time_of(const SiteScanInputs& inputs) {
+  if (inputs.time) return *inputs.time;
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(since_1970).count();
+}
+
+BasePose parse_base(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) {
+    usage_error("--base: '" + text + "' is not X,Y,HEADING such as 12,-3.5,90deg");
+  }
+  return {parse_quantity("--base", parts[0], Quantity::length),
+          parse_quantity("--base", parts[1], Quantity::length), 0.0,
+          parse_quantity("--base", parts[2], Quantity::angle)};
+}
+
+void declare_order(Arguments& arguments, OrderInputs& inputs) {
+  arguments.file("site", inputs.site,
+                 "description of a plain site, which says all but what is given here");
+  arguments.file("design", inputs.design,
+                 "surface that the ground is to have: LandXML, DXF, PLY, OBJ, STL, .asc or .tif");
+  arguments.text("surface", "NAME", inputs.surface, "which of several in that file");
+  arguments.text("trench", "LxWxD", inputs.trench,
+                 "instead of a file: length, width of the floor, and depth in its middle below the "
+                 "mean of the ground along it, such as 15x1x0.5 [m]");
+  arguments.text("from", "X,Y", inputs.from, "middle of its end at the machine [m]");
+  arguments.option("heading", inputs.heading, Quantity::angle, "of the trench from there");
+  arguments.option("grade", inputs.grade, Quantity::ratio, "of its floor, > 0 rises along it");
+  arguments.option("batter", inputs.batter, Quantity::ratio,
+                   "of its walls, horizontal per vertical; 0: upright");
+  arguments.soil(inputs.soil);
+  arguments.machine(inputs.machine);
+  add_texts(arguments, "windrow", "X1,Y1,X2,Y2,...", inputs.windrows,
+            "polygon in which soil is laid; may be given several times [m]");
+  add_texts(arguments, "heap", "X1,Y1,X2,Y2,...", inputs.heaps, "the same of a heap [m]");
+  arguments.text("truck", "X1,Y1,...:HEIGHT:KG", inputs.truck,
+                 "bed of a truck, its upper edge over the ground, and the mass of a load [m,m,kg]");
+  add_texts(arguments, "keep-out", "X1,Y1,...[:DEPTH]", inputs.keep_out,
+            "polygon that is not touched, with a depth from there on down; may be given several "
+            "times [m]");
+  arguments.option("tolerance", inputs.tolerance, Quantity::length,
+                   "of the finished ground, to either side");
+  arguments.option("density", inputs.density, Quantity::percent,
+                   "relative density of the ground, with which plans begin (default: 50, or as "
+                   "the site says)");
+  for (const char* alone : {"design", "trench"}) arguments.exclude("site", {alone});
+  arguments.exclude("site", {"from", "heading", "grade", "batter", "soil", "machine", "windrow",
+                             "heap", "truck", "keep-out", "tolerance", "surface"});
+  arguments.exclude("design", {"trench", "from", "heading", "grade", "batter"});
+}
+
+Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
+  if (inputs.site) {
+    if (scan.scan) usage_error("--site excludes --scan: the site names its first scan");
+    return order_of_site(*inputs.site, inputs.density);
+  }
+  Order order;
+  SiteSettings& site = order.settings.site;
+  site.machine = machine_named(inputs.machine);
+  site.soil = soil_named(inputs.soil);
+  order.settings.density_percent = inputs.density.value_or(order.settings.density_percent);
+  order.settings.design = job_of(inputs, site.machine);
+  order.first = scan_of(scan);
+  const Surface ground = surface_of(order.first, usual_cell(site.machine));
+  order.settings.surface = design_of(inputs, ground);
+  return finished(std::move(order), inputs.machine);
+}
+
+}  // namespace excavplan::tools
