@@ -9,7 +9,6 @@
 #include <excavplan/trial/job_reference.hpp>
 #include <excavplan/trial/job_trial.hpp>
 
-
 namespace excavplan {
 
 /// The keys of simulate-site.

@@ -7,7 +7,7 @@
 
 #include <excavplan/trial/job_score.hpp>
 
-#include "plain_site_folder.hpp"
+#include "trial/plain_site_folder.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::test {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/trial/job_score.hpp>
 
-#include "plain_site_folder.hpp"
+#include "trial/plain_site_folder.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::test {

@@ -5,7 +5,7 @@
 #include <excavplan/trial/job_reference.hpp>
 #include <excavplan/trial/plain_planners.hpp>
 
-#include "plain_site_folder.hpp"
+#include "trial/plain_site_folder.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "plain_site_folder.hpp"
+#include "trial/plain_site_folder.hpp"
 #include "support/errors.hpp"
 #include "trial/tracked_path.hpp"
 
