@@ -10,14 +10,15 @@ namespace {
 
 // Numbers of our own choice.
 constexpr double normal_95 = 1.959963984540054;
-constexpr double memory = 0.1;            // of the scatter, of each new reading
-constexpr double drift = 0.02;            // of the two ratios from dig to dig, as the soil changes
-constexpr double strength_share = 0.5;    // of the energy of a dig that grows with the strength
-constexpr double strength_reading = 0.4;  // sd of ln of the strength by the energy of a dig
-constexpr double stall_surprise = 2.0;    // of a stall: so many deviations stronger than expected
-constexpr double least_doubt = 0.15;      // about ln of the strength, from place to place
-constexpr double least_fill = 0.3;        // of a bucket that teaches anything
-constexpr double least_energy = 0.1;      // of the dig in that of its cycle, to tell its own
+constexpr double memory = 0.1;       // of the scatter, of each new reading
+constexpr double drift = 0.02;       // of the two ratios from dig to dig, as the soil changes
+constexpr double least_share = 0.1;  // of the energy of a dig that tells of the strength
+constexpr double strength_reading =
+    0.3;  // sd of ln of the energy, as the simulator and the path are off
+constexpr double stall_surprise = 2.0;  // of a stall: so many deviations stronger than expected
+constexpr double least_doubt = 0.15;    // about ln of the strength, from place to place
+constexpr double least_fill = 0.3;      // of a bucket that teaches anything
+constexpr double least_energy = 0.1;    // of the dig in that of its cycle, to tell its own
 
 void learn_ratio(LearntNumber& ratio, double& scatter, double reading) {
   ratio.variance += drift * drift;
@@ -56,7 +57,7 @@ ForetoldStep JobLearning::foretell(const PlannedDig& dig) const {
   return foretold;
 }
 
-void JobLearning::learn(const PlannedDig& dig, const StepReport& report) {
+void JobLearning::learn(const PlannedDig& dig, double strength_share, const StepReport& report) {
   if (report.stalled) {
     const double sd = strength.sd();
     strength.learn(strength.mean + stall_surprise * sd, sd * sd);
@@ -71,7 +72,10 @@ void JobLearning::learn(const PlannedDig& dig, const StepReport& report) {
       *report.joint_work > rest) {
     const double ratio = std::log((*report.joint_work - rest) / dig.energy);
     learn_ratio(energy, energy_scatter, ratio);
-    strength.learn(strength.mean + ratio / strength_share, strength_reading * strength_reading);
+    if (strength_share > least_share) {
+      const double sd = strength_reading / strength_share;
+      strength.learn(strength.mean + ratio / strength_share, sd * sd);
+    }
   }
 }
 

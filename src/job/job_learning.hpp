@@ -30,7 +30,8 @@ struct JobLearning {
   LearntNumber strength = {0.0, 0.35 * 0.35};       ///< ln of the factor on the soil's strength
 
   ForetoldStep foretell(const PlannedDig& dig) const;
-  void learn(const PlannedDig& dig, const StepReport& report);
+  /// @param strength_share  StepDig::strength_share
+  void learn(const PlannedDig& dig, double strength_share, const StepReport& report);
 
   double strength_factor() const;  ///< that is expected
   double hard_factor() const;      ///< that a dig should not stall at

@@ -191,6 +191,7 @@ template <typename Record, typename Visit>
 void for_each_number(Record& record, Visit visit) {
   visit("deepest_cut_m", record.deepest_cut);
   visit("truck_load_kg", record.truck_load);
+  visit("strength_share", record.strength_share);
   visit("first_volume_m3", record.first_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
 }
@@ -234,7 +235,7 @@ JobRecord load_record(const std::string& folder) {
     value = static_cast<int>(object.number(key, 0, 1e9));
   });
   for_each_number(record,
-                  [&](const char* key, double& value) { value = object.number(key, 0, 1e12); });
+                  [&](const char* key, double& value) { value = object.number(key, -1e12, 1e12); });
   record.learning = read_learning(object.numbers("learning", 10));
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));

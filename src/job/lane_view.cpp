@@ -117,6 +117,10 @@ ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
       if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
       return;
     }
+    if (counts_(cell.row, cell.col)) {
+      change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -
+                               std::max(0.0, std::abs(after - target) - slack));
+    }
     change.gained += area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.too_deep +=
         area * (std::max(0.0, target - slack - after) - std::max(0.0, target - slack - before));

@@ -15,6 +15,7 @@ namespace excavplan {
 
 /// How the surface of a view changed.
 struct ShapeChange {
+  double shaped = 0.0;    ///< less that is out of tolerance, of what counts [m^3]
   double gained = 0.0;    ///< of what lies above the design [m^3]
   double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
   double spilled = 0.0;   ///< risen beside the design and the dump areas [m^3]
@@ -42,7 +43,7 @@ class LaneView {
   /// Largest height of a cell that counts over the design under the bucket [m]; 0: none.
   double highest_error(Eigen::Index col) const { return highest_error_(col); }
 
-  /// @param slack  so far below the design ground does not count [m]
+  /// @param slack  so far from the design ground is not too deep or out of shape [m]
   ShapeChange change(const TerrainPatch& patch, double slack) const;
 
  private:

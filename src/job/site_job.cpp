@@ -23,7 +23,8 @@ namespace {
 // Numbers of our own choice.
 constexpr std::size_t most_unseen = 5;   // digs between two scans
 constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
-constexpr double least_shaped = 0.004;   // of a finishing pass [m^3]
+constexpr double least_shaped = 0.003;   // of a finishing pass [m^3]
+constexpr double least_cleared = 0.015;  // of loose soil, likewise [m^3]
 constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
 constexpr int most_passes = 24;          // along the floor from one station
 constexpr int most_fruitless = 2;        // passes in succession that took nothing off
@@ -133,7 +134,9 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   if (!dig) return std::nullopt;
 
   const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
-  if (dig->change.gained < least) return std::nullopt;
+  const ShapeChange& change = dig->change;
+  const double shaped = std::max(change.shaped, least_shaped / least_cleared * change.gained);
+  if ((finishing ? shaped : change.gained) < least) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = frame.heading - record.base.heading;
   step.lane = dig->lane;
@@ -142,6 +145,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   if (dump->in_truck) step.truck = record.trucks;
   step.predicted = record.learning.foretell(dig->dig);
   record.planned = dig->dig;
+  record.strength_share = dig->strength_share;
   return step;
 }
 
@@ -213,7 +217,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
 }
 
 void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
-  record.learning.learn(*record.planned, report);
+  record.learning.learn(*record.planned, record.strength_share, report);
   JobProgress& progress = record.progress;
   const bool finishing = step.what == JobAction::finish;
   ++(finishing ? progress.finishing_passes : progress.digs);

@@ -30,15 +30,17 @@ constexpr double level_to = 1.2;    // likewise [m]
 const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
                                           0.22, 0.32, 0.45};  // of the layer of a drag [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
-constexpr double shortest_drag = 0.2;                         // [m]
+constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
+constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
+constexpr double shortest_drag = 0.2;  // [m]
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
 struct Attitude {
   double angle;
   bool is_kept;
 };
-const std::array<Attitude, 5> attitudes = {
-    {{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}, {1.1, false}}};
+const std::array<Attitude, 6> attitudes = {
+    {{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}, {0.95, false}, {1.1, false}}};
 const std::array<double, 3> finish_angles = {0.15, 0.3, 0.5};  // likewise
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
@@ -116,18 +118,18 @@ class StepSearch {
         const double depth = std::max(ground(start) - level, 0.0) + cut;
         for (const Attitude& attitude : attitudes) {
           rules.drag_keeps_angle = attitude.is_kept;
-          lay_out_layer(lane, start, {attitude.angle, depth, cut}, rules);
+          lay_out_layer(lane, start, {attitude.angle, depth, ground(start) - depth}, rules);
         }
         if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
       }
     }
   }
 
-  /// A penetration, and how thick a layer the drag takes.
+  /// A penetration and the height of the drag after it.
   struct Layer {
     double angle;
-    double depth;  ///< [m]
-    double cut;    ///< [m]
+    double depth;   ///< [m]
+    double height;  ///< of the drag [m]
   };
 
   void lay_out_layer(std::size_t lane, double start, const Layer& layer,
@@ -137,7 +139,8 @@ class StepSearch {
     const double longest = from - nearest(layer.angle);
     if (!(longest > shortest_drag)) return;
     for (const double fill : fills) {
-      const double drag = std::min(drag_that_fills(views_[lane], from, layer.cut, fill), longest);
+      const double drag =
+          std::min(drag_that_fills(views_[lane], from, layer.height, fill), longest);
       if (drag == last) break;
       add(lane, {layer.angle, layer.depth / std::sin(layer.angle), drag}, start, rules);
       last = drag;
@@ -172,18 +175,19 @@ class StepSearch {
     return col > 0 && col < view.columns() && view.excess(col, task_.allowance) > least_excess;
   }
 
-  /// The length of a drag at this depth that meets so much soil.
-  double drag_that_fills(const LaneView& view, double from, double depth, double fill) const {
+  /// The length of a drag at this height that meets so much soil.
+  double drag_that_fills(const LaneView& view, double from, double height, double fill) const {
     const double cell = view.surface().cell_size;
-    const double bulking = 1.0 + simulator_.loose().void_ratio;
-    const double wanted = fill * capacity_ / bulking * (1.0 + simulator_.bank().void_ratio) /
-                          machine_.bucket.width_outside;
-    double met = 0.5 * depth * depth;  // about what the penetration takes
+    const double bulking =
+        (1.0 + simulator_.loose().void_ratio) / (1.0 + simulator_.bank().void_ratio);
+    const double wanted = fill * capacity_ / bulking / machine_.bucket.width_outside;
+    double met = 0.0;
     double x = from;
     while (met < wanted && x > task_.near) {
       const auto col = static_cast<Index>((x - view.x(0)) / cell);
       if (col < 0 || col >= view.columns()) break;
-      met += cell * std::min(depth, view.excess(col, task_.allowance));
+      const double above = view.ground_at(col) - height;
+      if (above > 0.0) met += cell * std::min(above, view.excess(col, task_.allowance));
       x -= cell;
     }
     return std::max(shortest_drag, from - x);
@@ -217,10 +221,8 @@ class StepSearch {
   std::optional<StepDig> confirm(const Candidate& candidate) const {
     const LaneView& view = views_[candidate.lane];
     const Terrain& ground = view.ground().terrain();
-    if (!std::holds_alternative<PlannedDig>(
-            dig_of_path(machine_, hard_, ground, candidate.path, cycle()))) {
-      return std::nullopt;
-    }
+    const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle());
+    const auto* hard = std::get_if<PlannedDig>(&in_hard);
     auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle());
     auto* found = std::get_if<SimulatedDig>(&dug);
     if (found == nullptr) return std::nullopt;
@@ -230,10 +232,15 @@ class StepSearch {
     step.dig = found->dig;
     step.result = std::move(found->result);
     step.change = view.change(step.result.patch, task_.slack);
-    const double gain = step.change.gained - too_deep_price * step.change.too_deep -
-                        spill_price * step.change.spilled;
+    const double shaped = std::max(step.change.shaped, cleared_worth * step.change.gained);
+    const double gain = (task_.finishing ? shaped : step.change.gained) -
+                        too_deep_price * step.change.too_deep - spill_price * step.change.spilled;
     if (!(gain > 0.0)) return std::nullopt;
-    step.worth = gain / cost(step.dig);
+    step.worth = (hard != nullptr ? 1.0 : risky) * gain / cost(step.dig);
+    if (hard != nullptr) {
+      step.strength_share = std::log(hard->energy / step.dig.energy) /
+                            std::log(task_.hard_factor / task_.strength_factor);
+    }
     return step;
   }
 

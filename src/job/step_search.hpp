@@ -42,7 +42,8 @@ struct StepDig {
   PlannedDig dig;     ///< with its cycle
   DigResult result;   ///< of the ground of its lane
   ShapeChange change;
-  double worth = 0.0;  ///< volume of the design per cost of the cycle [m^3/J]
+  double strength_share = 0.0;  ///< of ln of the energy in ln of the soil's strength [-]
+  double worth = 0.0;           ///< volume of the design per cost of the cycle [m^3/J]
 };
 
 /// @return nothing if no dig gains anything
