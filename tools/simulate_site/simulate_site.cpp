@@ -52,8 +52,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
     arguments.require_ending({".asc"});
   });
   declare_simulator(arguments, inputs.simulator);
-  arguments.only_if({[&inputs] { return inputs.bound; }, "only --bound searches in threads"},
-                    [&] { arguments.threads(inputs.threads, "; the result does not depend on it"); });
+  arguments.only_if({[&inputs] { return inputs.bound; }, "only --bound searches in threads"}, [&] {
+    arguments.threads(inputs.threads, "; the result does not depend on it");
+  });
 }
 
 void write_ground(const std::string& file, const HeightMap& ground) {
