@@ -27,7 +27,7 @@ constexpr double least_shaped = 0.012;  // payload of a finishing pass [m^3]
 
 constexpr double worth_a_dig = 0.015;    // of ground brought into shape by any dig [m^3]
 constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
-constexpr int most_passes = 10;          // along the floor from one station
+constexpr int most_passes = 6;           // along the floor from one station
 constexpr int most_fruitless = 2;        // passes in succession that took nothing off
 constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
 constexpr double high_share = 0.8;       // of the tolerance: higher cells call for a pass

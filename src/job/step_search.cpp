@@ -31,6 +31,7 @@ const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
                                           0.22, 0.32, 0.45};  // of the layer of a drag [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
+constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
 constexpr double lifted_worth = 0.02;  // of any soil that a finishing pass lifts, likewise
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
 const std::array<double, 4> wall_angles = {0.8, 0.95, 1.05, 1.13};  // likewise
@@ -103,7 +104,8 @@ class StepSearch {
     rules.floor = view.floor(task_.allowance);
     rules.penetration_clearance = heel_clearance;
     const GroundProfile ground = view.profile();
-    for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
+    const double last = task_.finishing ? least_pass * (task_.far - task_.near) : start_step;
+    for (double start = task_.far; start > task_.near + last; start -= start_step) {
       if (std::isnan(ground(start) - rules.floor(start)) || !is_worth_a_dig(view, start)) continue;
       if (task_.finishing) {
         rules.drag_keeps_angle = true;
