@@ -181,7 +181,7 @@ bool SiteJob::State::wants_passes() const {
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) return move_step();
   const bool is_fresh = ground.unseen().empty();
-  if (record.wants_scan) return step_of(JobAction::scan, "to see where the dig stalled");
+  if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   if (auto step = dig_step(false)) return *std::move(step);
   if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
@@ -195,7 +195,7 @@ JobStep SiteJob::State::decide() {
     return move_step();
   }
   const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
-  return step_of(JobAction::stop, now.is_finished ? "finished" : "stuck: nothing more can be dug");
+  return step_of(JobAction::stop, now.is_finished ? "finished" : "what is left cannot be dug");
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
