@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/job/job_progress.hpp>
 #include <excavplan/job/job_step.hpp>
-#include <excavplan/job/site_job.hpp>
 
 #include "job/job_ground.hpp"
 #include "job/job_learning.hpp"

@@ -21,12 +21,13 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr std::size_t most_unseen = 5;   // digs between two scans
-constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
-constexpr double least_shaped = 0.003;   // of a finishing pass [m^3]
-constexpr double least_cleared = 0.015;  // of loose soil, likewise [m^3]
+constexpr std::size_t most_unseen = 5;  // digs between two scans
+constexpr double least_gain = 0.12;     // of a dig for volume, over the bucket's capacity
+constexpr double least_shaped = 0.012;  // payload of a finishing pass [m^3]
+
+constexpr double worth_a_dig = 0.015;    // of ground brought into shape by any dig [m^3]
 constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
-constexpr int most_passes = 24;          // along the floor from one station
+constexpr int most_passes = 6;           // along the floor from one station
 constexpr int most_fruitless = 2;        // passes in succession that took nothing off
 constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
 constexpr double high_share = 0.8;       // of the tolerance: higher cells call for a pass
@@ -137,8 +138,8 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
 
   const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
   const ShapeChange& change = dig->change;
-  const double shaped = std::max(change.shaped, least_shaped / least_cleared * change.cleared);
-  if ((finishing ? shaped : change.gained) < least) return std::nullopt;
+  const bool shapes = change.shaped > worth_a_dig;
+  if (!shapes && (finishing ? dig->dig.payload_volume : change.gained) < least) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = frame.heading - record.base.heading;
   step.lane = dig->lane;
@@ -182,7 +183,7 @@ bool SiteJob::State::wants_passes() const {
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) return move_step();
   const bool is_fresh = ground.unseen().empty();
-  if (record.wants_scan) return step_of(JobAction::scan, "to see where the dig stalled");
+  if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   if (auto step = dig_step(false)) return *std::move(step);
   if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
@@ -196,7 +197,7 @@ JobStep SiteJob::State::decide() {
     return move_step();
   }
   const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
-  return step_of(JobAction::stop, now.is_finished ? "finished" : "stuck: nothing more can be dug");
+  return step_of(JobAction::stop, now.is_finished ? "finished" : "what is left cannot be dug");
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {

@@ -31,8 +31,12 @@ const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
                                           0.22, 0.32, 0.45};  // of the layer of a drag [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
+constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
+constexpr double lifted_worth = 0.02;  // of any soil that a finishing pass lifts, likewise
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
-constexpr double shortest_drag = 0.2;  // [m]
+const std::array<double, 4> wall_angles = {0.8, 0.95, 1.05, 1.13};  // likewise
+const std::array<double, 2> wall_drags = {0.25, 0.6};               // [m]
+constexpr double shortest_drag = 0.2;                               // [m]
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
 struct Attitude {
@@ -100,7 +104,8 @@ class StepSearch {
     rules.floor = view.floor(task_.allowance);
     rules.penetration_clearance = heel_clearance;
     const GroundProfile ground = view.profile();
-    for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
+    const double last = task_.finishing ? least_pass * (task_.far - task_.near) : start_step;
+    for (double start = task_.far; start > task_.near + last; start -= start_step) {
       if (std::isnan(ground(start) - rules.floor(start)) || !is_worth_a_dig(view, start)) continue;
       if (task_.finishing) {
         rules.drag_keeps_angle = true;
@@ -109,6 +114,7 @@ class StepSearch {
           const double drag = start - down / std::tan(angle) - nearest(angle);
           if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
         }
+        if (start == task_.far) cut_end_wall(lane, rules);
         continue;
       }
       const double level = mean_ground(view, start - level_to, start - level_from);
@@ -122,6 +128,14 @@ class StepSearch {
         }
         if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
       }
+    }
+  }
+
+  /// Down the end of the work, as steep as the machine can.
+  void cut_end_wall(std::size_t lane, DigPathOptions rules) {
+    rules.drag_keeps_angle = false;
+    for (const double angle : wall_angles) {
+      for (const double drag : wall_drags) add(lane, {angle, 2.0, drag}, task_.far, rules);
     }
   }
 
@@ -232,9 +246,11 @@ class StepSearch {
     step.dig = found->dig;
     step.result = std::move(found->result);
     step.change = view.change(step.result.patch, task_.slack);
-    const double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
+    double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
+    if (!(shaped > 0.0)) shaped = lifted_worth * step.dig.payload_volume;
+    const double deep_price = task_.finishing ? 1.0 : too_deep_price;
     const double gain = (task_.finishing ? shaped : step.change.gained) -
-                        too_deep_price * step.change.too_deep - spill_price * step.change.spilled;
+                        deep_price * step.change.too_deep - spill_price * step.change.spilled;
     if (!(gain > 0.0)) return std::nullopt;
     step.worth = (hard != nullptr ? 1.0 : risky) * gain / cost(step.dig);
     if (hard != nullptr) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -24,7 +25,7 @@ struct DumpPlace {
 /// the other.
 class DumpPlaces {
  public:
-  DumpPlaces(const JobDesign& job, const Machine& machine) : job_(job), machine_(machine) {}
+  DumpPlaces(JobDesign job, Machine machine) : job_(std::move(job)), machine_(std::move(machine)) {}
 
   /// @param heading  of the dig [rad]
   DumpPlace from(const BasePose& base, double heading, const SeenGround& ground) const;

@@ -9,7 +9,6 @@
 #include <excavplan/trial/job_reference.hpp>
 #include <excavplan/trial/job_trial.hpp>
 
-
 namespace excavplan {
 
 /// The keys of simulate-site.
@@ -18,7 +17,7 @@ nlohmann::ordered_json trial_json(const JobTrial& trial);
 nlohmann::ordered_json reference_json(const JobReference& reference);
 
 /// The lines of the log of a job (docs/formats.md#job-log) that a step gives, each with its end.
-std::string log_lines(const TrialStep& step);
+std::string log_lines(const TrialStep& at);
 /// Its last line.
 std::string log_end(const JobTrial& trial);
 

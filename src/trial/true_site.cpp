@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/machine/trajectory.hpp>
@@ -93,8 +94,8 @@ CycleShare cycle_cost(const Machine& machine, const DigPath& path, const DigResu
 }  // namespace
 
 struct TrueSite::State {
-  State(const HiddenSite& of, const Machine& digger, const TruthOptions& how)
-      : site(of), machine(digger), options(how), ground(of.ground) {
+  State(const HiddenSite& of, Machine digger, TruthOptions how)
+      : site(of), machine(std::move(digger)), options(std::move(how)), ground(of.ground) {
     density = mean_density(site);
     simulator = options.simulator.make(machine, site.soil, density);
     seen_height = ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),

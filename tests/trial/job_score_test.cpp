@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/trial/job_score.hpp>
 
-#include "plain_site_folder.hpp"
 #include "support/errors.hpp"
+#include "trial/plain_site_folder.hpp"
 
 namespace excavplan::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <excavplan/trial/job_reference.hpp>
 #include <excavplan/trial/plain_planners.hpp>
 
-#include "plain_site_folder.hpp"
 #include "support/errors.hpp"
+#include "trial/plain_site_folder.hpp"
 
 namespace excavplan::test {
 namespace {

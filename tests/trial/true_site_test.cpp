@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "plain_site_folder.hpp"
 #include "support/errors.hpp"
+#include "trial/plain_site_folder.hpp"
 #include "trial/tracked_path.hpp"
 
 namespace excavplan::test {

@@ -52,7 +52,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
     arguments.require_ending({".asc"});
   });
   declare_simulator(arguments, inputs.simulator);
-  arguments.threads(inputs.threads, "the result does not depend on it");
+  arguments.only_if({[&inputs] { return inputs.bound; }, "only --bound searches in threads"}, [&] {
+    arguments.threads(inputs.threads, "; the result does not depend on it");
+  });
 }
 
 void write_ground(const std::string& file, const HeightMap& ground) {
@@ -105,7 +107,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(site.known.machine);
   if (inputs.bound) return bound_of(inputs, site, machine, console);
   console.progress(0.0, "playing the job");
-  const auto planner = planner_of(inputs.planner, site, machine, inputs.threads);
+  const auto planner = planner_of(inputs.planner, site, machine);
   std::string log;
   TrialOptions options;
   options.truth.simulator = simulator_of(inputs.simulator, console);

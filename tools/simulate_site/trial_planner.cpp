@@ -76,7 +76,7 @@ std::vector<std::string> planner_words() {
 }
 
 std::unique_ptr<JobPlanner> planner_of(const std::string& word, const HiddenSite& site,
-                                       const Machine& machine, std::uint64_t /*threads*/) {
+                                       const Machine& machine) {
   for (const PlainPolicy& policy : plain_policies()) {
     if (policy.word == word) return plain_planner(policy, site.known, site.first_scan, machine);
   }

@@ -17,8 +17,7 @@ std::vector<std::string> planner_words();
 
 /// A planner by its word. It is given what is known of the site and nothing else; "known" is given
 /// density and strength as they are beside it.
-/// @param threads  0: one per core
 std::unique_ptr<JobPlanner> planner_of(const std::string& word, const HiddenSite& site,
-                                       const Machine& machine, std::uint64_t threads);
+                                       const Machine& machine);
 
 }  // namespace excavplan::tools

@@ -6,7 +6,7 @@
 
 namespace excavplan {
 
-/// How a job left the ground, cell by cell of the true ground (docs/methods.md#jobs).
+/// How a job left the ground, cell by cell of the true ground (docs/methods.md#simulated-jobs).
 ///
 /// Footprint: where the design lies below the ground before. Zone: the footprint without its rim
 /// (JobDesign::edge_margin) and without faces steeper than 60 degrees and what is as near to them.

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace excavplan {
+
+/// How far a job has come.
+struct JobProgress {
+  double design_volume = 0.0;  ///< to be taken out when the job began [m^3]
+  double left_volume = 0.0;    ///< still above the design [m^3]
+  double rms = 0.0;            ///< of the deviation where it counts [m]
+  double p95 = 0.0;            ///< of its absolute value [m]
+  double beyond_twice = 0.0;   ///< share of what counts beyond twice the tolerance [-]
+  double seen = 0.0;           ///< share of the design that was seen [-]
+  bool is_finished = false;    ///< within the tolerance (Deviation), 99 % of it seen
+  int digs = 0;                ///< for volume
+  int finishing_passes = 0;
+  int moves = 0;
+  int scans = 0;
+  int stalls = 0;
+  double payload_mass = 0.0;  ///< lifted in all [kg]
+};
+
+}  // namespace excavplan
