@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include <excavplan/base/error.hpp>
 #include <excavplan/design/design_file.hpp>
 #include <excavplan/ground/ground_state.hpp>
 #include <excavplan/machine/machine.hpp>
@@ -175,6 +176,9 @@ void save_order(const std::string& folder, const JobSettings& settings, const Or
 
 JobSettings load_order(const std::string& folder) {
   const std::string path = folder + order_file;
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::bad_file, folder + ": holds no job: it has no order.json");
+  }
   JsonObject object =
       JsonObject::open_sealed(path, read_own_file(path, most_foreign_bytes), format);
   JobSettings settings;

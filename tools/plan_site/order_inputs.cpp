@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan_site/order_inputs.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -49,13 +50,13 @@ bool is_raster(const std::string& file) {
 }
 
 /// The ground as a scan shows it.
-Surface surface_of(const Scan& scan, double cell_size) {
+Surface surface_of(const Scan& scan, const Machine& machine) {
   const ScanOutline seen = outline(scan);
   if (!seen.extent) {
     throw Error(ErrorKind::bad_file, "--scan: " + scan.files.front() + " holds no finite point");
   }
   RasterOptions options;
-  options.cell_size = cell_size;
+  options.cell_size = std::max(usual_cell(machine), survey_cell({seen}));
   return survey_surface(scan, *seen.extent, options);
 }
 
@@ -239,7 +240,7 @@ Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
   order.settings.density_percent = inputs.density.value_or(order.settings.density_percent);
   order.settings.design = job_of(inputs, site.machine);
   order.first = scan_of(scan);
-  const Surface ground = surface_of(order.first, usual_cell(site.machine));
+  const Surface ground = surface_of(order.first, site.machine);
   order.settings.surface = design_of(inputs, ground);
   return finished(std::move(order), inputs.machine);
 }
