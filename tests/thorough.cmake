@@ -45,6 +45,9 @@ set(thorough_sensing_test
   SurveyPlan.PredictsTheScatterOfSimulatedSurveys
   SceneTest.CalibrationDigsInTheSimulatorGiven
   SceneTest.TheUsualLawIsTheShippedOneOfTheVerySameSoil)
+# A whole job.
+set(thorough_job_test
+  SiteJob.WithExactScansATrenchIsDugToItsDesign)
 # Convergence over grids and a thousand digs.
 set(thorough_calibration_test
   Validation.ConvergesWithTheGrid

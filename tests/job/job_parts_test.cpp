@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <excavplan/job/job_motion.hpp>
+
+#include "job/dump_place.hpp"
+#include "job/job_map.hpp"
+#include "job/job_stations.hpp"
+#include "job/lane_view.hpp"
+#include "job/trench_job.hpp"
+#include "support/errors.hpp"
+
+/// @file
+/// Parts of a job on ground and designs made by hand.
+
+namespace excavplan::test {
+namespace {
+
+SitePolygon box(double x_min, double y_min, double x_max, double y_max) {
+  return {{x_min, y_min}, {x_max, y_min}, {x_max, y_max}, {x_min, y_max}};
+}
+
+/// A trench along x from 0 in level ground, dug from beyond its near end.
+struct HandMadeJob {
+  explicit HandMadeJob(double length = 10.0, double width = 1.0) {
+    settings.site.soil = load_soil(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/loam.json");
+    settings.site.machine = zx120();
+    settings.design.start = BasePose{-4.0, 0.0, 0.0, 0.0};
+    settings.design.dump_areas = {{DumpArea::Kind::windrow, box(-6.0, 1.5, 14.0, 6.0)}};
+    DesignWords words;
+    words.length = length;
+    words.floor_width = width;
+    words.depth = 0.5;
+    settings.surface = design_of_words(words, ground.bank);
+  }
+  JobMap map() const { return map_of(settings, ground.bank); }
+  JobFrame frame() const { return frame_of(settings, map()); }
+
+  Terrain ground = undisturbed(flat_ground({-12.0, -8.0, 18.0, 8.0}, 0.05));
+  JobSettings settings;
+};
+
+TEST(JobMap, HoldsTheDesignWhereItIs) {
+  const HandMadeJob job;
+  const JobMap map = job.map();
+  const double cells = 10.0 * 1.0 / (0.05 * 0.05);
+  EXPECT_NEAR(static_cast<double>((!map.target.z.isNaN()).count()), cells, 0.02 * cells);
+  const auto middle = *cell_at(map.target, 5.0, 0.0);
+  EXPECT_NEAR(map.target.z(middle.row, middle.col), -0.5, 1e-9);
+  EXPECT_TRUE(map.counts(middle.row, middle.col));
+  const auto rim = *cell_at(map.target, 5.0, 0.48);
+  EXPECT_FALSE(map.counts(rim.row, rim.col));
+}
+
+TEST(JobFrame, LiesAlongTheHeadingOfTheStart) {
+  HandMadeJob job;
+  const JobFrame frame = job.frame();
+  EXPECT_NEAR(frame.near, 4.0, 0.06);
+  EXPECT_NEAR(frame.far, 14.0, 0.06);
+  EXPECT_NEAR(frame.left - frame.right, 1.0, 0.11);
+  EXPECT_LT((frame.of(frame.place(3.0, -2.0)) - Eigen::Vector2d(3.0, -2.0)).norm(), 1e-12);
+}
+
+TEST(JobStations, GoBackwardsAndReachAllOfTheDesign) {
+  const HandMadeJob job;
+  const JobFrame frame = job.frame();
+  const auto stations = stations_of(frame, job.settings);
+  double covered = frame.far;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (i > 0) {
+      EXPECT_LT(stations[i].along, stations[i - 1].along);
+    }
+    const WorkRange range = work_range(frame, job.settings.site.machine, stations[i].along);
+    EXPECT_GT(range.far, range.near);
+    EXPECT_GE(stations[i].along + range.far, covered - 0.07) << "a gap before station " << i;
+    covered = stations[i].along + range.near;
+  }
+  EXPECT_LT(covered, frame.near + 0.1);
+}
+
+TEST(JobStations, LanesCoverTheWidth) {
+  for (const double width : {0.9, 1.0, 1.6, 3.0}) {
+    const HandMadeJob job(10.0, width);
+    const double half = 0.5 * job.settings.site.machine.bucket.width_outside;
+    const JobFrame frame = job.frame();
+    double right = 10.0, left = -10.0;
+    for (const JobStation& station : stations_of(frame, job.settings)) {
+      for (const double lane : station.lanes) {
+        right = std::min(right, lane - half);
+        left = std::max(left, lane + half);
+        EXPECT_LE(std::abs(lane - station.beside), 0.34);
+      }
+    }
+    EXPECT_NEAR(right, frame.right, 0.05) << width;
+    EXPECT_NEAR(left, frame.left, 0.05) << width;
+  }
+}
+
+TEST(DumpPlace, IsInTheAreaAndAwayFromTheTrench) {
+  HandMadeJob job;
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  const auto place = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(place);
+  EXPECT_GT(place->place.y(), 0.5 + 0.6);
+  EXPECT_GT(place->swing, 0.0);
+  const Eigen::Vector2d from = place->place.head<2>() - Eigen::Vector2d(base.x, base.y);
+  EXPECT_NEAR(std::atan2(from.y(), from.x()), place->swing, 1e-9);
+  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(20.0, 1.5, 24.0, 6.0)}};
+  EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
+}
+
+TEST(DumpPlace, ATruckIsLoadedFromAboveItsBed) {
+  HandMadeJob job;
+  job.settings.design.truck = JobTruck{box(2.0, 3.0, 6.0, 5.4), 1.5, 9000.0};
+  const auto place = dump_place(job.settings, job.map(), job.ground, {3.0, 0.0, 0.0, 0.0});
+  ASSERT_TRUE(place);
+  EXPECT_TRUE(place->in_truck);
+  EXPECT_GT(place->place.z(), 1.5 + job.settings.site.machine.bucket_length);
+  const BasePose far = {-8.0, 0.0, 0.0, 0.0};
+  EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, far));
+}
+
+TEST(LaneView, ItsFloorIsTheDesignAndAboveAKeepOut) {
+  HandMadeJob job;
+  KeepOut cable = {"cable", box(5.0, -3.0, 6.0, 3.0), 0.2};
+  KeepOut manhole = {"manhole", box(8.0, -0.2, 8.5, 0.2), {}};
+  job.settings.design.keep_out = {cable, manhole};
+  const Machine& machine = job.settings.site.machine;
+  const LaneView view(job.ground, job.map(), dig_line({0.0, 0.0, 0.0, 0.0}),
+                      {-2.0, -2.0, 12.0, 2.0}, machine.bucket.width_outside);
+  const GroundProfile floor = view.floor(0.0);
+  EXPECT_NEAR(floor(3.0), -0.5, 1e-9);
+  for (double x = 5.05; x < 5.95; x += 0.1) EXPECT_GE(floor(x), -0.2 - 1e-9) << x;
+  for (double x = 8.05; x < 8.45; x += 0.1) EXPECT_FALSE(floor(x) < -1e-9) << x;
+  EXPECT_FALSE(floor(-1.0) < -1e-9);
+}
+
+TEST(JobMotion, TheToothStaysOnItsLane) {
+  const HandMadeJob job;
+  const Machine& machine = job.settings.site.machine;
+  JobStep step;
+  step.id = 1;
+  step.what = JobAction::dig;
+  step.base = {2.0, 0.3, 0.0, 0.1};
+  step.swung = -0.1;
+  step.lane = 0.25;
+  step.path =
+      std::get<DigPath>(make_dig_path(machine, {0.7, 0.3, 1.2}, 6.2, [](double) { return 0.0; }));
+  step.dump = {5.0, 4.0, 2.4};
+  auto made = motion_of(job.settings, job.ground, step);
+  const auto* blocked = std::get_if<BlockedWay>(&made);
+  ASSERT_EQ(blocked, nullptr) << blocked->message;
+  const Trajectory& motion = std::get<Trajectory>(made);
+  const DigPhase last = motion.points.back().phase;
+  EXPECT_EQ(last, DigPhase::back);
+  double dumped_at = 1e9;
+  for (const TrajectoryPoint& point : motion.points) {
+    const double turn = step.base.heading + point.swing.angle;
+    const double y = step.base.y + point.bucket.x * std::sin(turn);
+    if (point.phase == DigPhase::penetrate || point.phase == DigPhase::drag) {
+      EXPECT_NEAR(y, 0.3 + 0.25, 0.005) << point.time;
+    }
+    const LinkPositions links = link_positions(machine, point.joints);
+    const Eigen::Vector3d pin(step.base.x + links.bucket_pin.x() * std::cos(turn),
+                              step.base.y + links.bucket_pin.x() * std::sin(turn),
+                              links.bucket_pin.y());
+    dumped_at = std::min(dumped_at, (pin - step.dump).norm());
+  }
+  EXPECT_LT(dumped_at, 0.02);
+  EXPECT_NEAR(motion.points.front().swing.angle, motion.points.back().swing.angle, 1e-6);
+  EXPECT_LT((motion.points.front().joints - motion.points.back().joints).norm(), 1e-6);
+}
+
+TEST(JobMotion, ATruckInTheWayBlocksIt) {
+  HandMadeJob job;
+  job.settings.design.obstacles = {{"wall", box(4.0, 1.0, 7.0, 1.5), 9.0}};
+  JobStep step;
+  step.what = JobAction::dig;
+  step.base = {2.0, 0.0, 0.0, 0.0};
+  step.path =
+      std::get<DigPath>(make_dig_path(zx120(), {0.7, 0.3, 1.2}, 6.2, [](double) { return 0.0; }));
+  step.dump = {5.0, 4.0, 2.4};
+  const auto made = motion_of(job.settings, job.ground, step);
+  ASSERT_TRUE(std::holds_alternative<BlockedWay>(made));
+  EXPECT_NE(std::get<BlockedWay>(made).message, "");
+}
+
+TEST(JobOrder, ComesBackWholeWithoutItsSources) {
+  HandMadeJob job;
+  job.settings.site.law =
+      load_density_law(std::string(EXCAVPLAN_DATA_SOURCE) + "/laws/zx120-loam.json");
+  job.settings.site.soil.void_ratio_max += 0.01;
+  job.settings.site.cell_size = 0.06;
+  job.settings.density_percent = 61.5;
+  JobDesign& design = job.settings.design;
+  design.name = "main";
+  design.tolerance = 0.025;
+  design.keep_out = {{"cable", box(5.0, -3.0, 6.0, 3.0), 0.8}, {"", box(1.0, 1.0, 2.0, 2.0), {}}};
+  design.obstacles = {{"pole", box(8.0, 2.0, 8.2, 2.2), 4.0}};
+  design.truck = JobTruck{box(2.0, 3.0, 6.0, 5.4), 1.5, 9000.0};
+  std::get<Tin>(job.settings.surface.shape).origin += Eigen::Vector3d(5e5, 4e6, 0.0);
+  const TemporaryFolder folder;
+  const std::string path = folder.file("job");
+  save_order(path, job.settings,
+             {std::string(EXCAVPLAN_DATA_SOURCE) + "/machines/zx120.json",
+              std::string(EXCAVPLAN_DATA_SOURCE) + "/laws/zx120-loam.json"});
+  const JobSettings kept = load_order(path);
+  EXPECT_EQ(fingerprint(kept.site.soil), fingerprint(job.settings.site.soil));
+  EXPECT_EQ(fingerprint(kept.site.machine), fingerprint(job.settings.site.machine));
+  EXPECT_EQ(kept.site.law.name, job.settings.site.law.name);
+  EXPECT_EQ(kept.site.cell_size, 0.06);
+  EXPECT_EQ(kept.density_percent, 61.5);
+  EXPECT_EQ(kept.design.tolerance, 0.025);
+  ASSERT_EQ(kept.design.keep_out.size(), 2U);
+  EXPECT_EQ(kept.design.keep_out[0].polygon, design.keep_out[0].polygon);
+  EXPECT_EQ(kept.design.keep_out[0].depth, 0.8);
+  EXPECT_FALSE(kept.design.keep_out[1].depth);
+  EXPECT_EQ(kept.design.obstacles[0].height, 4.0);
+  EXPECT_EQ(kept.design.truck->target_mass, 9000.0);
+  EXPECT_EQ(kept.design.start->x, -4.0);
+  EXPECT_TRUE(kept.surface.cuts_only);
+  EXPECT_NEAR(area_in_plan(kept.surface), area_in_plan(job.settings.surface), 1e-9);
+  const Rectangle a = extent_of(kept.surface), b = extent_of(job.settings.surface);
+  EXPECT_NEAR(a.x_min, b.x_min, 1e-9);
+  EXPECT_NEAR(a.y_max, b.y_max, 1e-9);
+}
+
+TEST(JobOrder, ARasterComesBackCellByCell) {
+  HandMadeJob job;
+  HeightMap raster = flat_ground({0.0, -0.5, 10.0, 0.5}, 0.1);
+  raster.z += -0.5;
+  raster.z(0, 0) = std::nan("");
+  job.settings.surface = {};
+  job.settings.surface.shape = raster;
+  const TemporaryFolder folder;
+  save_order(folder.file("job"), job.settings,
+             {std::string(EXCAVPLAN_DATA_SOURCE) + "/machines/zx120.json", ""});
+  const DesignSurface kept = load_order(folder.file("job")).surface;
+  const HeightMap& map = std::get<HeightMap>(kept.shape);
+  EXPECT_TRUE(std::isnan(map.z(0, 0)));
+  EXPECT_EQ(map.z(3, 4), -0.5);
+  EXPECT_EQ(map.origin, raster.origin);
+}
+
+TEST(JobOrder, DamageIsTold) {
+  const HandMadeJob job;
+  const TemporaryFolder folder;
+  EXPECT_NE(
+      error_of([&] { load_order(folder.file("none")); }, ErrorKind::bad_file).find("holds no job"),
+      std::string::npos);
+  const std::string path = folder.file("job");
+  save_order(path, job.settings, {std::string(EXCAVPLAN_DATA_SOURCE) + "/machines/zx120.json", ""});
+  std::string text = content_of(path + "/order.json");
+  text.replace(text.find("0.03"), 4, "0.05");
+  std::ofstream(path + "/order.json", std::ios::binary) << text;
+  EXPECT_NE(error_of([&] { load_order(path); }, ErrorKind::bad_file).find("order.json"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace excavplan::test

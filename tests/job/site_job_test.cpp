@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/job/site_job.hpp>
+
+#include <cmath>
+
+#include <excavplan/job/job_motion.hpp>
+
+#include "ground/grid_cells.hpp"
+#include "job/trench_job.hpp"
+#include "support/errors.hpp"
+
+namespace excavplan::test {
+namespace {
+
+void expect_same(const JobStep& a, const JobStep& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.what, b.what);
+  EXPECT_EQ(a.lane, b.lane);
+  EXPECT_EQ(a.dump, b.dump);
+  ASSERT_EQ(a.path.poses.size(), b.path.poses.size());
+  for (std::size_t i = 0; i < a.path.poses.size(); ++i) {
+    ASSERT_EQ(a.path.poses[i].joints, b.path.poses[i].joints);
+  }
+}
+
+/// Begins a job and does its first steps: to its first dig, at least.
+struct BegunJob {
+  explicit BegunJob(int steps = 2) {
+    for (int i = 0; i < steps; ++i) of.make_step(job);
+  }
+  const ShortTrench site{};
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+};
+
+TEST(SiteJob, TheStepStaysUntilItIsDone) {
+  BegunJob begun;
+  const JobStep step = begun.job.next();
+  EXPECT_EQ(step.what, JobAction::dig);
+  EXPECT_GT(step.predicted.payload_mass, 0.0);
+  const std::string record = begun.of.record();
+  expect_same(begun.job.next(), step);
+  for (const long long other : {step.id - 1, step.id + 1, 0LL}) begun.job.done(other, {});
+  EXPECT_EQ(begun.of.record(), record);
+  expect_same(begun.job.next(), step);
+}
+
+TEST(SiteJob, ResumedAfterEachStepItGoesOnWithTheSameBytes) {
+  const ShortTrench site;
+  TrenchJob one{site}, other{site};
+  SiteJob through = one.begin();
+  other.begin();
+  for (int i = 0; i < 9; ++i) {
+    {
+      SiteJob resumed = other.resume();
+      expect_same(resumed.next(), through.next());
+    }
+    SiteJob resumed = other.resume();
+    one.make_step(through);
+    other.make_step(resumed);
+    ASSERT_EQ(one.record(), other.record()) << i;
+  }
+  EXPECT_GE(through.progress().scans, 1);
+}
+
+/// As if the process was killed when the site had taken the scan in, and the job was not written.
+TEST(SiteJob, AScanWhoseJobWasNotWrittenIsTakenBack) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  std::string before;
+  long long id = 0;
+  do {
+    id = job.next().id;
+    before = of.record();
+    of.make_step(job);
+  } while (!of.report.scan);
+  const std::string after = of.record();
+  job = SiteJob(std::move(job));
+  { SiteJob ended = std::move(job); }
+  std::ofstream(of.path() + "/job.json", std::ios::binary) << before;
+  SiteJob again = of.resume();
+  EXPECT_EQ(again.next().id, id);
+  again.done(id, of.report);
+  EXPECT_EQ(of.record(), after);
+}
+
+TEST(SiteJob, TheLastChangeIsTakenBack) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  EXPECT_NE(error_of([&] { job.undo(); }).find("no step to take back"), std::string::npos);
+  do {
+    (void)job.next();
+    const std::string before = of.record();
+    const double left = job.progress().left_volume;
+    const JobStep step = of.make_step(job);
+    job.undo();
+    EXPECT_EQ(of.record(), before);
+    EXPECT_EQ(job.progress().left_volume, left);
+    expect_same(job.next(), step);
+    EXPECT_NE(error_of([&] { job.undo(); }), "");
+    job.done(step.id, of.report);
+  } while (!of.report.scan);
+}
+
+TEST(SiteJob, AScanOfNoStepChangesThePlan) {
+  BegunJob begun;
+  const JobStep step = begun.job.next();
+  begun.job.look(begun.of.truth.scan(), begun.of.truth.time() + 1.0);
+  EXPECT_EQ(begun.job.progress().scans, 1);
+  EXPECT_GT(begun.job.next().id, step.id);
+  begun.job.undo();
+  expect_same(begun.job.next(), step);
+}
+
+TEST(SiteJob, AMoveThatWasAskedForOutlastsAScan) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  const JobStep move = job.next();
+  ASSERT_EQ(move.what, JobAction::move);
+  job.look(of.truth.scan(), trial_begin + 1.0);
+  expect_same(job.next(), move);
+}
+
+TEST(SiteJob, AFolderHoldsOneJob) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  of.begin();
+  EXPECT_NE(error_of([&] { of.begin(); }).find("holds a job already"), std::string::npos);
+  of.settings.design.start.reset();
+  EXPECT_NE(error_of([&] { of.resume(); }).find("start is not told"), std::string::npos);
+}
+
+/// Share of the floor of the usual trench, less its rim, that lies within so far of -0.4 m.
+double share_within(const Terrain& ground, double tolerance) {
+  const HeightMap surface = ground.surface();
+  int count = 0, within = 0;
+  for_each_cell(surface.z, [&](Cell at) {
+    const double x = surface.x(at.col), y = surface.y(at.row);
+    if (x < 2.1 || x > 5.9 || std::abs(y) > 0.4) return;
+    ++count;
+    if (std::abs(surface.z(at.row, at.col) + 0.4) <= tolerance) ++within;
+  });
+  return static_cast<double>(within) / count;
+}
+
+/// True soil as believed, and no errors but those of cells, of what the sensor does not see, and of
+/// half a millimetre in its ranges, so that no two scans are the same.
+TEST(SiteJob, WithExactScansATrenchIsDugToItsDesign) {
+  PlainSiteFolder site;
+  site.site["sensor"]["noise_sd_at_1m_m"] = 0.0005;
+  site.density = [](double, double) { return 50.0; };
+  TrenchJob of{site, truth_cell};
+  of.settings.density_percent = 50.0;
+  SiteJob job = of.begin();
+  JobStep step;
+  int blocked = 0;
+  for (int i = 0; i < 200; ++i) {
+    step = job.next();
+    if (step.what == JobAction::stop) break;
+    const auto motion = motion_of(of.settings, job.ground(), step);
+    if (const auto* stop = std::get_if<BlockedWay>(&motion)) {
+      ++blocked;
+      std::printf("%lld %s: %s\n", step.id, name(step.what), stop->message.c_str());
+    }
+    of.make_step(job);
+  }
+  const JobProgress done = job.progress();
+  EXPECT_EQ(step.what, JobAction::stop);
+  EXPECT_EQ(blocked, 0);
+  EXPECT_LT(done.left_volume, 0.25 * done.design_volume);
+  EXPECT_GT(share_within(of.truth.ground(), 0.03), 0.7);
+}
+
+TEST(SiteJob, AKeepOutIsNotCut) {
+  ShortTrench site;
+  const double depth = 0.15;
+  site.site["keep_out"] = {{{"kind", "cable"},
+                            {"polygon", {{3.0, -2.0}, {3.6, -2.0}, {3.6, 2.0}, {3.0, 2.0}}},
+                            {"depth_m", depth}}};
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  for (int i = 0; i < 12; ++i) {
+    if (job.next().what == JobAction::stop) break;
+    of.make_step(job);
+  }
+  EXPECT_GT(job.progress().digs, 4);
+  const HeightMap& bank = of.truth.ground().bank;
+  for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
+      if (bank.x(col) < 3.05 || bank.x(col) > 3.55) continue;
+      ASSERT_GT(bank.z(row, col), -depth - 0.01) << bank.x(col) << ' ' << bank.y(row);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace excavplan::test
