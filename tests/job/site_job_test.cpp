@@ -3,6 +3,7 @@
 #include <excavplan/job/site_job.hpp>
 
 #include <cmath>
+#include <fstream>
 
 #include <excavplan/job/job_motion.hpp>
 

@@ -2,22 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include <excavplan/job/job_order.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/trial/true_site.hpp>
 
+#include "support/run_program.hpp"
 #include "trial/plain_site_folder.hpp"
 
 namespace excavplan::test {
-
-inline std::string content_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// The job of a plain site and its true ground, which is known to the planner but for its errors.
 class TrenchJob {

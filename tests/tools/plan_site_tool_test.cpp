@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include <excavplan/machine/trajectory.hpp>
+
+#include "support/tool_answers.hpp"
+
+namespace excavplan::test {
+namespace {
+
+/// A trench of 2.5 m in level ground, as words on the command line and as a plain site.
+class PlanSite : public BadInput {
+ protected:
+  std::string grid(const std::string& name, const std::function<double(double, double)>& height) {
+    const int cols = 180, rows = 140;
+    std::string text = "ncols 180\nnrows 140\nxllcorner -8\nyllcorner -7\ncellsize 0.1\n";
+    for (int row = rows - 1; row >= 0; --row) {
+      for (int col = 0; col < cols; ++col) {
+        text += std::to_string(height(-7.95 + 0.1 * col, -6.95 + 0.1 * row)) + ' ';
+      }
+      text += '\n';
+    }
+    return folder.write(name, text);
+  }
+
+  std::string job() const { return folder.file("job"); }
+  Words order() const {
+    return {"new",    job(), "--trench", "2.5x1x0.4", "--from",    "2,0",   "--heading", "0",
+            "--scan", level, "--soil",   "loam",      "--windrow", windrow, "--time",    "1000"};
+  }
+  json next() { return answer("plan-site", {"next", job()}); }
+  json done(const json& step, const Words& more = {}) {
+    return answer("plan-site",
+                  Words{"done", job(), "--step", std::to_string(step["step"].get<int>())} + more);
+  }
+
+  const std::string windrow = "-1,1.5,7,1.5,7,5.5,-1,5.5";
+  const std::string level = grid("scan0.asc", [](double, double) { return 0.0; });
+};
+
+TEST_F(PlanSite, OrderStepAndReport) {
+  const json begun = answer("plan-site", order());
+  EXPECT_NEAR(number(begun, "progress/design_m3"), 1.0, 0.06);
+  fs::remove(level);
+  const json move = next();
+  EXPECT_EQ(move["what"], "move");
+  EXPECT_TRUE(move["path"].is_null());
+  EXPECT_EQ(done(move, {"--base", "-0.6,0,0"})["taken"], true);
+
+  const json dig = next();
+  EXPECT_EQ(dig, next());
+  EXPECT_EQ(dig["what"], "dig");
+  EXPECT_NEAR(number(dig, "base/x_m"), -0.6, 1e-12);
+  expect_keys(dig, "number",
+              path_keys + Words{"step", "base/x_m", "base/y_m", "base/z_m", "base/heading_rad",
+                                "base/roll_rad", "base/pitch_rad", "path/lane_m", "path/grade_rad",
+                                "dump/x_m", "dump/y_m", "dump/z_m", "predicted/payload_kg",
+                                "predicted/energy_kj", "predicted/time_s"});
+  expect_keys(dig, "array",
+              {"predicted/payload_kg_interval", "predicted/energy_kj_interval", "warnings"});
+  expect_keys(dig, "boolean", {"path/floor", "trustworthy"});
+  const std::string motion = content_of(dig["trajectory"].get<std::string>());
+  EXPECT_EQ(motion.rfind("time_s,phase,boom_rad,arm_rad,bucket_rad,tip_x_m,tip_z_m", 0), 0U);
+  EXPECT_TRUE(contains(motion, ",dump,"));
+
+  const std::string record = content_of(job() + "/job.json");
+  EXPECT_EQ(done(move)["taken"], false);
+  EXPECT_EQ(content_of(job() + "/job.json"), record);
+  const std::string dug = grid("scan1.asc", [](double x, double y) {
+    return x > 3.2 && x < 4.4 && y > 0.0 && y < 0.5 ? -0.3 : 0.0;
+  });
+  const json after =
+      done(dig, {"--payload-mass", "400", "--energy-kj", "140", "--scan", dug, "--time", "1200"});
+  EXPECT_EQ(after["scan_taken"], true);
+  EXPECT_LT(number(after, "progress/left_m3"), number(begun, "progress/left_m3") - 0.1);
+  EXPECT_EQ(after["progress"]["digs"], 1);
+  EXPECT_EQ(answer("plan-site", {"show", job()})["progress"], after["progress"]);
+  EXPECT_EQ(answer("plan-site", {"undo", job()})["step"], dig["step"]);
+  EXPECT_EQ(content_of(job() + "/job.json"), record);
+}
+
+TEST_F(PlanSite, AScanWithoutAStepAndAJobThatEnds) {
+  answer("plan-site", order());
+  const json move = next();
+  done(move, {"--base", "-0.6,0,0"});
+  const std::string finished = grid("finished.asc", [](double x, double y) {
+    return x > 2.0 && x < 4.5 && y > -0.5 && y < 0.5 ? -0.4 : 0.0;
+  });
+  const json seen = answer("plan-site", {"scan", job(), "--scan", finished, "--time", "1300"});
+  EXPECT_EQ(seen["scan_taken"], true);
+  EXPECT_LT(number(seen, "progress/rms_m"), 0.01);
+  json step;
+  for (int i = 0; i < 4; ++i) {
+    const ProgramResult result = run_program("plan-site", {"next", job(), "--json"});
+    step = json::parse(result.out);
+    if (step["what"] == "stop") {
+      EXPECT_EQ(result.code, 10);
+      EXPECT_EQ(step["reason"], "finished");
+      return;
+    }
+    ASSERT_EQ(step["what"], "move") << step;
+    done(step);
+  }
+  ADD_FAILURE() << step;
+}
+
+TEST_F(PlanSite, APlainSiteSaysAll) {
+  json site = {{"format", "plain-site"},
+               {"version", 1},
+               {"design",
+                {{"kind", "trench"},
+                 {"length_m", 2.5},
+                 {"floor_width_m", 1.0},
+                 {"depth_m", 0.4},
+                 {"origin_m", {2.0, 0.0}},
+                 {"heading_rad", 0.0}}},
+               {"tolerance_m", 0.02},
+               {"start_pose", {{"x", -0.6}, {"y", 0.0}, {"heading_rad", 0.0}}},
+               {"soil", {{"name", "loam"}, {"e_max", 1.4}}},
+               {"sensor",
+                {{"name", "lidar"},
+                 {"mount", "cab"},
+                 {"noise_sd_at_1m_m", 0.0},
+                 {"height_m", 3.0},
+                 {"tilt_deg", 25},
+                 {"field_of_view_deg", {360, 45}}}},
+               {"dump_areas",
+                {{{"kind", "windrow"}, {"polygon", {{-1, 1.5}, {7, 1.5}, {7, 5.5}, {-1, 5.5}}}}}},
+               {"files", {{"first_scan", "scan0.asc"}}}};
+  const std::string file = folder.write("site.json", site.dump());
+  const json begun = answer("plan-site", {"new", job(), "--site", file});
+  EXPECT_NEAR(number(begun, "progress/design_m3"), 1.0, 0.06);
+  const json kept = json::parse(content_of(job() + "/order.json"));
+  EXPECT_EQ(kept["tolerance_m"], 0.02);
+  EXPECT_EQ(kept["kept"]["soil"]["void_ratio_max"], 1.4);
+  site["start_pose"]["x"] = "there";
+  refused(3, "start_pose", "plan-site",
+          {"new", folder.file("other"), "--site", folder.write("bad.json", site.dump())});
+  refused(2, "--site excludes --soil", "plan-site",
+          {"new", folder.file("other"), "--site", file, "--soil", "clay"});
+}
+
+TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
+  const auto with = [&](const std::string& option, const std::string& value) {
+    Words words = order();
+    const auto at = std::find(words.begin(), words.end(), option);
+    if (at == words.end()) return words + Words{option, value};
+    *(at + 1) = value;
+    return words;
+  };
+  const auto refuse = [&](const std::string& option, const std::string& value,
+                          const std::string& reason, int code = 2) {
+    refused(code, reason, "plan-site", with(option, value));
+  };
+  refuse("--trench", "4x1", "--trench: design: the size of a trench is '4x1'");
+  refuse("--trench", "4x1x0", "depth [m]");
+  refuse("--from", "200,0", "no ground is known along it");
+  refuse("--heading", "north", "--heading: 'north'");
+  refuse("--windrow", "1,2,3,4", "--windrow: '1,2,3,4': its polygon has 2 corners");
+  refuse("--truck", "1,2,3,4,5,6:2", "--truck: truck '1,2,3,4,5,6:2': must be POLYGON:HEIGHT:KG");
+  refuse("--keep-out", "1,2,3,4,5,6:deep", "--keep-out: depth of a keep-out [m] is 'deep'");
+  refuse("--tolerance", "0", "tolerance [m]");
+  refuse("--density", "140", "density [%]");
+  refuse("--base", "1,2", "--base: '1,2' is not X,Y,HEADING");
+  refuse("--soil", "peat", "peat");
+  refuse("--scan", folder.file("none.asc"), "none.asc", 3);
+  refuse("--design", letter, "--design excludes --trench");
+  refused(2, "COMMAND: 'nxt' is not one of new|next|done|scan|show|undo", "plan-site",
+          {"nxt", job()});
+  refused(3, "holds no job: it has no order.json", "plan-site", {"next", job()});
+  answer("plan-site", order());
+  refused(2, "holds a job already", "plan-site", order());
+  refused(2, "--step is missing", "plan-site", {"done", job()});
+  refused(2, "--scan is missing", "plan-site", {"scan", job()});
+  refused(2, "no step to take back", "plan-site", {"undo", job()});
+  const ProgramResult ignored = run_program("plan-site", {"show", job(), "--payload-mass", "5"});
+  EXPECT_EQ(ignored.code, 0);
+  EXPECT_TRUE(contains(ignored.err, "without effect: --payload-mass")) << ignored.err;
+  std::ofstream(job() + "/job.json", std::ios::app) << "x";
+  EXPECT_EQ(run_program("plan-site", {"next", job()}).code, 3);
+}
+
+}  // namespace
+}  // namespace excavplan::test
