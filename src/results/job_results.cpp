@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "results/job_results.hpp"
-
 #include "base/json.hpp"
+#include "results/plan_results.hpp"
 
 namespace excavplan {
 namespace {

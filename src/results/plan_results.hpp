@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 
 #include "results/json_fwd.hpp"
@@ -16,6 +17,13 @@ std::string reason_of(const DigPlan& plan);
 /// All keys of plan-path but those of its inputs and the time it took; "path" is null if there is
 /// no dig. @param objective  that the dig was searched for
 Json plan_json(const DigPlan& plan, const GroundDensity& density, const DigObjective& objective);
+
+/// A step of a job, as plan-site next prints it; "path", "dump" and "predicted" are null where it
+/// is no dig, "warnings" are left out.
+Json job_step_json(const JobStep& step);
+
+/// How far a job has come, as plan-site show prints it.
+Json progress_json(const JobProgress& progress);
 
 /// Key `search` of a result: all that a search was set to.
 Json search_settings_json(const Machine& machine, const DigSearchOptions& options);

@@ -5,7 +5,6 @@
 #include "base/json.hpp"
 #include "results/density_results.hpp"
 #include "results/efficiency_results.hpp"
-#include "results/job_results.hpp"
 #include "results/plan_results.hpp"
 #include "results/scan_results.hpp"
 #include "results/scene_results.hpp"

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_site/job_commands.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <excavplan/job/job_motion.hpp>
+#include <excavplan/job/site_job.hpp>
+#include <excavplan/logs/dig_log.hpp>
+#include <excavplan/site/site.hpp>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+#include "plan_site/job_lines.hpp"
+#include "results/plan_results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+constexpr int finished_code = 10, stuck_code = 11;
+
+SiteJob job_in(const std::string& folder) { return SiteJob::resume(folder, load_order(folder)); }
+
+bool holds_job(const std::string& folder) { return std::filesystem::exists(folder + "/job.json"); }
+
+/// Of a job that was ordered and, as its process was killed, not begun.
+void forget_scan(const std::string& folder, const JobSettings& settings) {
+  excavplan::Site site(folder, settings.site, SiteAccess::write);
+  if (!site.is_empty()) site.undo();
+}
+
+void add_progress(const SiteJob& job, Outcome& outcome) {
+  const JobProgress progress = job.progress();
+  outcome.json["progress"] = progress_json(progress);
+  for (const std::string& line : progress_lines(progress)) outcome.lines.push_back(line);
+}
+
+void add_scan_warnings(const SiteJob& job, Outcome& outcome) {
+  for (const Warning& each : job.scan_warnings()) outcome.warnings.push_back(each);
+  outcome.json["scan_taken"] =
+      std::none_of(outcome.warnings.begin(), outcome.warnings.end(),
+                   [](const Warning& each) { return each.code == WarningCode::scan_not_taken; });
+}
+
+Outcome work_new(const JobInputs& inputs, Console& console) {
+  OrderInputs told = inputs.order;
+  told.base = inputs.base;
+  const Order order = order_of(told, inputs.scan);
+  if (holds_job(inputs.folder)) {
+    usage_error(inputs.folder + ": holds a job already: go on with it, or take another folder");
+  }
+  console.progress(0.0, "reading the scan");
+  const bool was_begun = std::filesystem::exists(inputs.folder + "/order.json");
+  save_order(inputs.folder, order.settings, order.files);
+  const JobSettings kept = load_order(inputs.folder);
+  if (was_begun) forget_scan(inputs.folder, kept);
+  SiteJob job = SiteJob::begin(inputs.folder, kept, order.first, time_of(inputs.scan));
+  Outcome outcome;
+  outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
+  add_progress(job, outcome);
+  for (const std::string& note : order.settings.surface.notes) console.note("design: " + note);
+  return outcome;
+}
+
+/// Writes the motion of a dig into the folder of its job.
+void add_motion(const std::string& folder, const SiteJob& job, JobStep& step, Outcome& outcome) {
+  outcome.json["trajectory"] = nullptr;
+  if (step.path.poses.empty()) return;
+  auto motion = motion_of(load_order(folder), job.ground(), step);
+  if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
+    step.warnings.emplace_back(
+        WarningCode::no_motion,
+        "the step has no motion: something is in the way: " + blocked->message);
+  } else {
+    const Trajectory& timed = std::get<Trajectory>(motion);
+    const std::string file = folder + "/motion-" + std::to_string(step.id) + ".csv";
+    write_file(file, to_csv(timed));
+    outcome.json["trajectory"] = file;
+    step.warnings.insert(step.warnings.end(), timed.warnings.begin(), timed.warnings.end());
+  }
+  for (const Warning& each : step.warnings) {
+    if (each.ends_trust) step.trustworthy = false;
+  }
+}
+
+Outcome work_next(const JobInputs& inputs, Console& /*console*/) {
+  SiteJob job = job_in(inputs.folder);
+  JobStep step = job.next();
+  Outcome outcome;
+  add_motion(inputs.folder, job, step, outcome);
+  const nlohmann::ordered_json trajectory = outcome.json["trajectory"];
+  outcome.json = job_step_json(step);
+  outcome.json["trajectory"] = trajectory;
+  outcome.lines = step_lines(step);
+  if (trajectory.is_string()) {
+    outcome.lines.push_back("trajectory   " + trajectory.get<std::string>());
+  }
+  outcome.warnings = step.warnings;
+  outcome.trustworthy = step.trustworthy;
+  if (step.what == JobAction::stop) {
+    outcome.exit_code = step.reason == "finished" ? finished_code : stuck_code;
+  }
+  return outcome;
+}
+
+/// Work of the joints in a log of a whole cycle [J].
+double work_in(const std::string& file, const Machine& machine) {
+  DigLogSource source;
+  source.file = file;
+  source.pistons = piston_areas(machine);
+  const DigLog log = read_dig_log(source);
+  if (!log.of_joints) usage_error("--loads: " + file + " is no log of the joints");
+  return log.integral(log.whole);
+}
+
+StepReport report_of(const JobInputs& inputs) {
+  StepReport report;
+  report.time = time_of(inputs.scan);
+  if (inputs.scan.scan) report.scan = scan_of(inputs.scan);
+  report.payload_mass = inputs.payload_mass;
+  if (inputs.energy) report.joint_work = *inputs.energy;
+  if (inputs.loads) {
+    if (inputs.energy)
+      usage_error("--loads excludes --energy-kj: both tell the work of the joints");
+    report.joint_work = work_in(*inputs.loads, load_order(inputs.folder).site.machine);
+  }
+  report.stalled = inputs.stalled;
+  return report;
+}
+
+Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
+  if (!inputs.step) usage_error("--step is missing: the step that was done, as next names it");
+  SiteJob job = job_in(inputs.folder);
+  StepReport report = report_of(inputs);
+  const JobStep present = job.next();
+  if (inputs.base) {
+    report.base = parse_base(*inputs.base);
+    report.base->z = present.base.z;
+  }
+  Outcome outcome;
+  const bool is_present = present.id == *inputs.step;
+  outcome.json = {{"step", *inputs.step}, {"taken", is_present}};
+  if (is_present && present.what == JobAction::scan && !report.scan) {
+    usage_error("--scan is missing: step " + std::to_string(present.id) + " is a scan");
+  }
+  if (is_present) {
+    job.done(present.id, report);
+    if (report.scan) add_scan_warnings(job, outcome);
+  } else {
+    outcome.lines.push_back("step         " + std::to_string(*inputs.step) +
+                            " is not the present one, " + std::to_string(present.id) +
+                            ": nothing is changed");
+  }
+  add_progress(job, outcome);
+  return outcome;
+}
+
+Outcome work_scan(const JobInputs& inputs, Console& /*console*/) {
+  SiteJob job = job_in(inputs.folder);
+  job.look(scan_of(inputs.scan), time_of(inputs.scan));
+  Outcome outcome;
+  add_scan_warnings(job, outcome);
+  add_progress(job, outcome);
+  return outcome;
+}
+
+Outcome work_show(const JobInputs& inputs, Console& /*console*/) {
+  const SiteJob job = job_in(inputs.folder);
+  Outcome outcome;
+  add_progress(job, outcome);
+  return outcome;
+}
+
+Outcome work_undo(const JobInputs& inputs, Console& /*console*/) {
+  SiteJob job = job_in(inputs.folder);
+  job.undo();
+  Outcome outcome;
+  outcome.json["step"] = job.next().id;
+  add_progress(job, outcome);
+  return outcome;
+}
+
+}  // namespace
+
+const std::vector<JobCommand>& job_commands() {
+  static const std::vector<JobCommand> rows = {{"new", work_new},   {"next", work_next},
+                                               {"done", work_done}, {"scan", work_scan},
+                                               {"show", work_show}, {"undo", work_undo}};
+  return rows;
+}
+
+}  // namespace excavplan::tools

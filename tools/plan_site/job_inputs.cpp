@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_site/job_inputs.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace excavplan::tools {
+namespace {
+
+void declare_words(Arguments& arguments, JobInputs& inputs, const std::string& words) {
+  Arguments::Entry command;
+  command.name = command.placeholder = "COMMAND";
+  command.help = words;
+  command.positional = command.required = true;
+  command.assign = [&inputs, words](const std::string& text) {
+    const std::vector<std::string> known = split(words, '|');
+    if (std::find(known.begin(), known.end(), text) == known.end()) {
+      usage_error("COMMAND: '" + text + "' is not one of " + words);
+    }
+    inputs.command = text;
+  };
+  arguments.add(command);
+  Arguments::Entry folder;
+  folder.name = folder.placeholder = "FOLDER";
+  folder.help = "folder of the job";
+  folder.positional = folder.required = folder.place = true;
+  folder.assign = [&inputs](const std::string& text) { inputs.folder = text; };
+  arguments.add(folder);
+}
+
+}  // namespace
+
+void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) {
+  const auto is = [&inputs](const std::vector<std::string>& some) {
+    return [&inputs, some] {
+      return std::find(some.begin(), some.end(), inputs.command) != some.end();
+    };
+  };
+  declare_words(arguments, inputs, words);
+  arguments.only_if({is({"new"}), "it is of plan-site new"},
+                    [&] { declare_order(arguments, inputs.order); });
+  arguments.only_if({is({"new", "done", "scan"}), "this command takes no scan"},
+                    [&] { declare_scan(arguments, inputs.scan); });
+  arguments.only_if({is({"new", "done"}), "it is of plan-site new and done"}, [&] {
+    arguments.text("base", "X,Y,HEADING", inputs.base,
+                   "where the machine stands: of new when the job begins, in the heading in which "
+                   "it works (default: before the trench); of done after a move, if not where it "
+                   "was sent [m,m,rad]");
+  });
+  arguments.only_if({is({"done"}), "it is of plan-site done"}, [&] {
+    arguments.option("step", inputs.step, "the step that was done, as next names it");
+    arguments.option("payload-mass", inputs.payload_mass, Quantity::mass,
+                     "that the dig lifted, by the scale");
+    Arguments::Entry energy;
+    energy.name = "energy-kj";
+    energy.placeholder = "NUMBER";
+    energy.help = "work of the joints over the whole cycle [kJ]";
+    energy.assign = [&inputs](const std::string& text) {
+      inputs.energy = 1000.0 * parse_quantity("--energy-kj", text, Quantity::ratio);
+    };
+    arguments.add(energy);
+    arguments.file("loads", inputs.loads,
+                   "instead a log of the joints over the whole cycle, CSV: torques and rates, "
+                   "pressures and piston speeds, or powers");
+    arguments.flag("stalled", inputs.stalled, "the machine could not finish the dig");
+  });
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "frame/arguments.hpp"
+#include "plan_site/order_inputs.hpp"
+
+namespace excavplan::tools {
+
+struct JobInputs {
+  std::string command, folder;
+  OrderInputs order;
+  SiteScanInputs scan;
+  std::optional<int> step;
+  std::optional<double> payload_mass, energy;
+  std::optional<std::string> loads, base;
+  bool stalled = false;
+};
+
+/// @param words  all commands, between bars
+void declare(Arguments& arguments, JobInputs& inputs, const std::string& words);
+
+}  // namespace excavplan::tools
