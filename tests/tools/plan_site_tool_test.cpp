@@ -45,7 +45,7 @@ class PlanSite : public BadInput {
 
 TEST_F(PlanSite, OrderStepAndReport) {
   const json begun = answer("plan-site", order());
-  EXPECT_NEAR(number(begun, "progress/design_m3"), 1.0, 0.06);
+  EXPECT_NEAR(number(begun, "/progress/design_m3"), 1.0, 0.06);
   fs::remove(level);
   const json move = next();
   EXPECT_EQ(move["what"], "move");
@@ -55,7 +55,7 @@ TEST_F(PlanSite, OrderStepAndReport) {
   const json dig = next();
   EXPECT_EQ(dig, next());
   EXPECT_EQ(dig["what"], "dig");
-  EXPECT_NEAR(number(dig, "base/x_m"), -0.6, 1e-12);
+  EXPECT_NEAR(number(dig, "/base/x_m"), -0.6, 1e-12);
   expect_keys(dig, "number",
               path_keys + Words{"step", "base/x_m", "base/y_m", "base/z_m", "base/heading_rad",
                                 "base/roll_rad", "base/pitch_rad", "path/lane_m", "path/grade_rad",
@@ -77,7 +77,7 @@ TEST_F(PlanSite, OrderStepAndReport) {
   const json after =
       done(dig, {"--payload-mass", "400", "--energy-kj", "140", "--scan", dug, "--time", "1200"});
   EXPECT_EQ(after["scan_taken"], true);
-  EXPECT_LT(number(after, "progress/left_m3"), number(begun, "progress/left_m3") - 0.1);
+  EXPECT_LT(number(after, "/progress/left_m3"), number(begun, "/progress/left_m3") - 0.1);
   EXPECT_EQ(after["progress"]["digs"], 1);
   EXPECT_EQ(answer("plan-site", {"show", job()})["progress"], after["progress"]);
   EXPECT_EQ(answer("plan-site", {"undo", job()})["step"], dig["step"]);
@@ -93,7 +93,7 @@ TEST_F(PlanSite, AScanWithoutAStepAndAJobThatEnds) {
   });
   const json seen = answer("plan-site", {"scan", job(), "--scan", finished, "--time", "1300"});
   EXPECT_EQ(seen["scan_taken"], true);
-  EXPECT_LT(number(seen, "progress/rms_m"), 0.01);
+  EXPECT_LT(number(seen, "/progress/rms_m"), 0.01);
   json step;
   for (int i = 0; i < 4; ++i) {
     const ProgramResult result = run_program("plan-site", {"next", job(), "--json"});
@@ -134,7 +134,7 @@ TEST_F(PlanSite, APlainSiteSaysAll) {
                {"files", {{"first_scan", "scan0.asc"}}}};
   const std::string file = folder.write("site.json", site.dump());
   const json begun = answer("plan-site", {"new", job(), "--site", file});
-  EXPECT_NEAR(number(begun, "progress/design_m3"), 1.0, 0.06);
+  EXPECT_NEAR(number(begun, "/progress/design_m3"), 1.0, 0.06);
   const json kept = json::parse(content_of(job() + "/order.json"));
   EXPECT_EQ(kept["tolerance_m"], 0.02);
   EXPECT_EQ(kept["kept"]["soil"]["void_ratio_max"], 1.4);
@@ -158,12 +158,12 @@ TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
     refused(code, reason, "plan-site", with(option, value));
   };
   refuse("--trench", "4x1", "--trench: design: the size of a trench is '4x1'");
-  refuse("--trench", "4x1x0", "depth [m]");
+  refuse("--trench", "4x1x200", "depth [m]");
   refuse("--from", "200,0", "no ground is known along it");
   refuse("--heading", "north", "--heading: 'north'");
   refuse("--windrow", "1,2,3,4", "--windrow: '1,2,3,4': its polygon has 2 corners");
   refuse("--truck", "1,2,3,4,5,6:2", "--truck: truck '1,2,3,4,5,6:2': must be POLYGON:HEIGHT:KG");
-  refuse("--keep-out", "1,2,3,4,5,6:deep", "--keep-out: depth of a keep-out [m] is 'deep'");
+  refuse("--keep-out", "1,2,3,4,5,9:deep", "--keep-out: depth of a keep-out [m] is 'deep'");
   refuse("--tolerance", "0", "tolerance [m]");
   refuse("--density", "140", "density [%]");
   refuse("--base", "1,2", "--base: '1,2' is not X,Y,HEADING");
