@@ -24,24 +24,11 @@ constexpr double unclear_margin = 0.05;  // beside walls, whose points fall on t
 constexpr double least_share = 0.5;      // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
-bool holds(const SitePolygon& polygon, const Vector2d& place) {
-  bool inside = false;
-  for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
-    const Vector2d& a = polygon[i];
-    const Vector2d& b = polygon[last];
-    if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-    if (place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
-
 /// The cells of a polygon.
 template <typename Visit>
 void for_each_inside(const SitePolygon& polygon, const HeightMap& grid, Visit visit) {
   for_each_cell(grid.z, [&](Cell at) {
-    if (holds(polygon, {grid.x(at.col), grid.y(at.row)})) visit(at);
+    if (is_inside(polygon, {grid.x(at.col), grid.y(at.row)})) visit(at);
   });
 }
 
@@ -60,6 +47,19 @@ Mask counting(const HeightMap& target, double edge_margin) {
 }
 
 }  // namespace
+
+bool is_inside(const SitePolygon& polygon, const Vector2d& place) {
+  bool inside = false;
+  for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
+    const Vector2d& a = polygon[i];
+    const Vector2d& b = polygon[last];
+    if ((a.y() > place.y()) == (b.y() > place.y())) continue;
+    if (place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
 
 void require_job_settings(const JobSettings& settings) {
   require_job(settings.design);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
@@ -15,6 +16,7 @@
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
+#include "job/step_motion.hpp"
 #include "job/step_search.hpp"
 
 namespace excavplan {
@@ -145,6 +147,12 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   step.dump = dump->place;
   if (dump->in_truck) step.truck = record.trucks;
   step.predicted = record.learning.foretell(dig->dig);
+  const auto down = way_down(machine, step.path, boom_plane_profile(dig->surface));
+  if (const auto* poses = std::get_if<std::vector<DigPose>>(&down)) step.path.approach = *poses;
+  const StepMotion motion = motion_of(settings, now, step);
+  step.warnings = motion.warnings;
+  step.trustworthy = motion.is_trustworthy;
+  step.reason = motion.blocked;
   record.planned = dig->dig;
   record.strength_share = dig->strength_share;
   return step;

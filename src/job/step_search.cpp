@@ -245,6 +245,7 @@ class StepSearch {
     step.path = candidate.path;
     step.dig = found->dig;
     step.result = std::move(found->result);
+    step.surface = view.surface();
     step.change = view.change(step.result.patch, task_.slack);
     double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
     if (!(shaped > 0.0)) shaped = lifted_worth * step.dig.payload_volume;
