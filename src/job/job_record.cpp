@@ -214,6 +214,7 @@ template <typename Record, typename Visit>
 void for_each_count(Record& record, Visit visit) {
   visit("passes_here", record.passes_here);
   visit("fruitless", record.fruitless);
+  visit("fruitless_digs", record.fruitless_digs);
   visit("trucks", record.trucks);
   visit("digs", record.progress.digs);
   visit("finishing_passes", record.progress.finishing_passes);
