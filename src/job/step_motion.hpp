@@ -25,6 +25,6 @@ struct StepMotion {
 
 /// plan_motion() of a dig on the ground of the job with its obstacles: from the start of the dig
 /// over swing and dump back to it; and standing_ground().
-StepMotion motion_of(const JobSettings& settings, const Terrain& ground, const JobStep& dig);
+StepMotion motion_of(const JobSettings& settings, const Terrain& ground, const JobStep& step);
 
 }  // namespace excavplan
