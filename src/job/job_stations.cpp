@@ -17,7 +17,7 @@ constexpr double overlap = 0.4;  // of what is dug from two places in succession
 constexpr double side_margin = 0.03;  // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.06;   // to the ends of the design, likewise [m]
 constexpr double lane_overlap = 0.1;  // of two lanes [m]
-constexpr double batter_step = 0.15;  // of lanes that cut a face in steps [m]
+constexpr double batter_step = 0.3;   // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
