@@ -81,7 +81,7 @@ void JobGround::expect(const JobStep& dig, double height_bias) {
   DigLine line = dig_line(dig.base, dig.swung, dig.lane);
   line.z += height_bias;
   const SoilVoids voids = soil_voids(soil, settings_.density_percent);
-  const DigResult result = dig_along(simulator, machine, expected_, line, voids, dig.path);
+  const DigResult result = dig_along(simulator, machine, expected_, {line, voids, dig.path});
   apply(result.patch, expected_);
   if (!dig.truck) {
     heap_soil(expected_, soil, settings_.density_percent, dig.dump.head<2>(),

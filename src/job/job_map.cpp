@@ -21,6 +21,8 @@ using Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double unclear_margin = 0.05;  // beside walls, whose points fall on the floor; ours [m]
+constexpr double flattest_face = 0.15;   // of a batter; ours [rad]
+constexpr double least_faces = 0.1;      // share of the design; ours
 constexpr double least_share = 0.5;      // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
@@ -28,7 +30,7 @@ const double steepest = CutOptions{}.steepest;
 template <typename Visit>
 void for_each_inside(const SitePolygon& polygon, const HeightMap& grid, Visit visit) {
   for_each_cell(grid.z, [&](Cell at) {
-    if (holds(polygon, {grid.x(at.col), grid.y(at.row)})) visit(at);
+    if (is_inside(polygon, {grid.x(at.col), grid.y(at.row)})) visit(at);
   });
 }
 
@@ -46,9 +48,26 @@ Mask counting(const HeightMap& target, double edge_margin) {
   return highest_within(left_out, margin) < 0.5;
 }
 
+/// Whether a share of the design that counts is a face that a dig does not make by itself.
+bool has_batter(const JobMap& map) {
+  int faces = 0;
+  int count = 0;
+  for_each_cell(map.target.z, [&](Cell at) {
+    if (!map.counts(at.row, at.col)) return;
+    double rise = 0.0;
+    for_each_neighbour(map.target.z, at, [&](Cell next) {
+      rise =
+          std::max(rise, std::abs(map.target.z(at.row, at.col) - map.target.z(next.row, next.col)));
+    });
+    ++count;
+    if (rise > std::tan(flattest_face) * map.target.cell_size) ++faces;
+  });
+  return faces > least_faces * count;
+}
+
 }  // namespace
 
-bool holds(const SitePolygon& polygon, const Vector2d& place) {
+bool is_inside(const SitePolygon& polygon, const Vector2d& place) {
   bool inside = false;
   for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
     const Vector2d& a = polygon[i];
@@ -128,6 +147,7 @@ JobFrame frame_of(const JobSettings& settings, const JobMap& map) {
   frame.far = box.max().x() + half;
   frame.right = box.min().y() - half;
   frame.left = box.max().y() + half;
+  frame.is_battered = has_batter(map);
   return frame;
 }
 

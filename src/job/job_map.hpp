@@ -25,17 +25,18 @@ struct JobMap {
 /// @param ground  before the job
 JobMap map_of(const JobSettings& settings, const HeightMap& ground);
 
-/// Whether a place lies in a polygon.
-bool holds(const SitePolygon& polygon, const Eigen::Vector2d& place);
+/// Whether a place lies in a polygon (even-odd rule).
+bool is_inside(const SitePolygon& polygon, const Eigen::Vector2d& place);
 
 /// Where the design lies along the machine's line of work.
 struct JobFrame {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of the line [m]
-  double heading = 0.0;  ///< of the line, away from where the job ends [rad]
-  double near = 0.0;     ///< of the design along the line [m]
-  double far = 0.0;      ///< likewise [m]
-  double right = 0.0;    ///< of the design beside the line, mostly below 0 [m]
-  double left = 0.0;     ///< likewise [m]
+  double heading = 0.0;      ///< of the line, away from where the job ends [rad]
+  double near = 0.0;         ///< of the design along the line [m]
+  double far = 0.0;          ///< likewise [m]
+  double right = 0.0;        ///< of the design beside the line, mostly below 0 [m]
+  double left = 0.0;         ///< likewise [m]
+  bool is_battered = false;  ///< some of the design is neither floor nor wall
 
   Eigen::Vector2d place(double along, double beside) const;
   Eigen::Vector2d of(const Eigen::Vector2d& place) const;  ///< along and beside

@@ -12,11 +12,14 @@
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "job/job_map.hpp"
+#include "planning/motion_load.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
+
+constexpr double motion_cell = 0.1;  // of the ground that the front passes over; ours [m]
 
 /// Swing of a lane from the direction of its line.
 double turn_at(double lane, double along) { return std::atan2(lane, along); }
@@ -46,7 +49,7 @@ std::variant<DigPath, BlockedWay> reaching_out(const Machine& machine, DigPath p
 /// The ground about a machine that has turned, with what stands on it by the design.
 Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLine& line) {
   const Machine& machine = settings.site.machine;
-  Terrain view = GroundAlong(site, line, swing_extent(machine), usual_cell(machine)).terrain();
+  Terrain view = GroundAlong(site, line, swing_extent(machine), motion_cell).terrain();
   view.obstacles = Eigen::ArrayXXd::Constant(view.bank.z.rows(), view.bank.z.cols(), std::nan(""));
   for_each_cell(view.bank.z, [&](Cell at) {
     const Vector2d place = line.place(view.bank.x(at.col), view.bank.y(at.row));
@@ -55,7 +58,8 @@ Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLi
     if (cell && site.obstacles.size() > 0) top = site.obstacles(cell->row, cell->col) - line.z;
     const double level = cell ? site.bank.z(cell->row, cell->col) - line.z : 0.0;
     const auto stand = [&](const SitePolygon& polygon, double height) {
-      if (holds(polygon, place)) top = std::fmax(top, (std::isnan(level) ? 0.0 : level) + height);
+      if (is_inside(polygon, place))
+        top = std::fmax(top, (std::isnan(level) ? 0.0 : level) + height);
     };
     for (const JobObstacle& each : settings.design.obstacles) stand(each.polygon, each.height);
     if (settings.design.truck) stand(settings.design.truck->bed, settings.design.truck->bed_height);
@@ -121,14 +125,14 @@ DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobSte
   const HeightMapSimulator simulator(machine, soil, settings.density_percent);
   const SoilVoids voids = soil_voids(soil, settings.density_percent);
   const DigResult dig = dig_along(simulator, machine, ground,
-                                  dig_line(step.base, step.swung, step.lane), voids, step.path);
+                                  {dig_line(step.base, step.swung, step.lane), voids, step.path});
   Terrain after = ground;
   apply(dig.patch, after);
   DigLoad load;
   if (!dig.stall) load.torques = dig.torques;
   load.payload_mass = std::max(dig.payload_mass, step.predicted.payload_mass);
   load.ground_after =
-      GroundAlong(after, turned, swing_extent(machine), usual_cell(machine)).terrain().surface();
+      GroundAlong(after, turned, swing_extent(machine), motion_cell).terrain().surface();
   return load;
 }
 
@@ -161,6 +165,9 @@ std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, cons
   }
   motion = time_way(machine, way, options);
   motion.warnings = way.warnings;
+  for (Warning& each : load_warnings(machine, way)) {
+    motion.warnings.push_back(std::move(each));
+  }
   motion.plan = PlanStamp{checksum_text(fingerprint(machine) + to_csv(motion)),
                           step.base.site_from_machine()};
   return motion;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job_record.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <utility>
@@ -33,6 +34,35 @@ constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase
                                DigPhase::dump,     DigPhase::back};
 constexpr std::array actions = {JobAction::dig,  JobAction::finish, JobAction::move,
                                 JobAction::scan, JobAction::wait,   JobAction::stop};
+
+constexpr std::array codes = {
+#define EXCAVPLAN_WARNING(code, trust) WarningCode::code,
+#include <excavplan/base/warning_codes.def>
+};
+
+Json warnings_json(const std::vector<Warning>& warnings) {
+  Json list = Json::array();
+  for (const Warning& each : warnings) {
+    list.push_back({{"code", code_text(each.code)},
+                    {"message", each.message},
+                    {"ends_trust", each.ends_trust}});
+  }
+  return list;
+}
+
+std::vector<Warning> read_warnings(std::vector<JsonObject> list) {
+  std::vector<Warning> warnings;
+  for (JsonObject& each : list) {
+    const std::string code = each.text("code");
+    const auto known = std::find_if(codes.begin(), codes.end(), [&](WarningCode candidate) {
+      return code_text(candidate) == code;
+    });
+    if (known == codes.end()) each.fail("code", "is no code of a warning");
+    warnings.emplace_back(*known, each.text("message"), each.flag("ends_trust"));
+    each.done();
+  }
+  return warnings;
+}
 
 Json poses_json(const std::vector<DigPose>& poses) {
   Json list = Json::array();
@@ -70,6 +100,7 @@ Json path_json(const DigPath& path) {
           {"floor", path.meets_floor},
           {"heel_clearance_rad", path.heel_clearance},
           {"overcut_m", path.overcut},
+          {"approach", poses_json(path.approach)},
           {"poses", poses_json(path.poses)}};
 }
 
@@ -83,6 +114,7 @@ DigPath read_path(JsonObject object) {
   path.meets_floor = object.flag("floor");
   path.heel_clearance = object.number("heel_clearance_rad");
   path.overcut = object.number("overcut_m");
+  path.approach = read_poses(object.objects("approach"));
   path.poses = read_poses(object.objects("poses"));
   object.done();
   return path;
@@ -108,6 +140,8 @@ Json step_json(const JobStep& step) {
                {"energy_j", step.predicted.energy},
                {"energy_interval_j", step.predicted.energy_interval},
                {"time_s", step.predicted.time},
+               {"trustworthy", step.trustworthy},
+               {"warnings", warnings_json(step.warnings)},
                {"reason", step.reason}};
   const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;
   if (digs) json["path"] = path_json(step.path);
@@ -133,6 +167,8 @@ JobStep read_step(JsonObject object) {
   foretold.payload_interval = {payloads[0], payloads[1]};
   const std::vector<double> energies = object.numbers("energy_interval_j", 2);
   foretold.energy_interval = {energies[0], energies[1]};
+  step.trustworthy = object.flag("trustworthy");
+  step.warnings = read_warnings(object.objects("warnings"));
   step.reason = object.text("reason");
   if (object.has("path")) step.path = read_path(object.object("path"));
   object.done();
@@ -179,6 +215,7 @@ template <typename Record, typename Visit>
 void for_each_count(Record& record, Visit visit) {
   visit("passes_here", record.passes_here);
   visit("fruitless", record.fruitless);
+  visit("fruitless_digs", record.fruitless_digs);
   visit("trucks", record.trucks);
   visit("digs", record.progress.digs);
   visit("finishing_passes", record.progress.finishing_passes);

@@ -32,7 +32,8 @@ struct JobRecord {
   bool has_arrived = false;           ///< at its present station
   bool wants_scan = false;            ///< after a stall
   int passes_here = 0;                ///< along the floor from this station
-  int fruitless = 0;                  ///< scans in succession after which nothing was to be done
+  int fruitless_digs = 0;             ///< digs for volume in succession that lifted little
+  int fruitless = 0;                  ///< finishing passes in succession that lifted little
   double truck_load = 0.0;            ///< in the present truck [kg]
   int trucks = 1;                     ///< so far
   double first_volume = 0.0;          ///< of the design when the job began [m^3]

@@ -17,6 +17,7 @@ constexpr double overlap = 0.4;  // of what is dug from two places in succession
 constexpr double side_margin = 0.03;  // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.06;   // to the ends of the design, likewise [m]
 constexpr double lane_overlap = 0.1;  // of two lanes [m]
+constexpr double batter_step = 0.3;   // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
@@ -25,7 +26,8 @@ std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double right = frame.right + half;
   const double left = frame.left - half;
   if (left <= right) return {0.5 * (frame.left + frame.right)};
-  const int more = static_cast<int>(std::ceil((left - right) / (bucket_width - lane_overlap)));
+  const double step = frame.is_battered ? batter_step : bucket_width - lane_overlap;
+  const int more = static_cast<int>(std::ceil((left - right) / step));
   std::vector<double> lanes;
   for (int i = 0; i <= more; ++i) lanes.push_back(right + (left - right) * i / more);
   return lanes;

@@ -61,11 +61,11 @@ void LaneView::look_under_bucket(double bucket_width) {
   first_row_ = static_cast<Index>(std::round(row_of(-0.5 * bucket_width)));
   end_row_ = static_cast<Index>(std::round(row_of(0.5 * bucket_width)));
   const auto inner = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
-  floor_ = ground_at_ = highest_error_ = ArrayXd::Zero(columns());
+  floor_ = ground_at_ = ArrayXd::Zero(columns());
   for (Index col = 0; col < columns(); ++col) {
     double floor = -infinity;
     double sum = 0.0;
-    int known = 0;
+    Index known = 0;
     for (Index row = first_row_; row < end_row_; ++row) {
       const double z = surface_.z(row, col);
       const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
@@ -77,9 +77,8 @@ void LaneView::look_under_bucket(double bucket_width) {
       if (std::isnan(z)) continue;
       sum += z;
       ++known;
-      if (clear_(row, col)) highest_error_(col) = std::max(highest_error_(col), z - target);
     }
-    ground_at_(col) = 2 * known > end_row_ - first_row_ ? sum / known : nan;
+    ground_at_(col) = 2 * known > end_row_ - first_row_ ? sum / static_cast<double>(known) : nan;
     floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
   }
 }

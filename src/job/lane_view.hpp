@@ -41,8 +41,6 @@ class LaneView {
   double ground_at(Eigen::Index col) const { return ground_at_(col); }  ///< likewise
   /// Mean thickness of what is above the floor under the bucket [m].
   double excess(Eigen::Index col, double allowance) const;
-  /// Largest height of a cell that counts over the design under the bucket [m]; 0: none.
-  double highest_error(Eigen::Index col) const { return highest_error_(col); }
 
   /// @param slack  so far from the design ground is not too deep or out of shape [m]
   ShapeChange change(const TerrainPatch& patch, double slack) const;
@@ -57,7 +55,7 @@ class LaneView {
   Mask clear_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
-  Eigen::ArrayXd floor_, ground_at_, highest_error_;
+  Eigen::ArrayXd floor_, ground_at_;
 };
 
 }  // namespace excavplan

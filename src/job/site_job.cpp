@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
@@ -15,6 +16,7 @@
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
+#include "job/step_motion.hpp"
 #include "job/step_search.hpp"
 
 namespace excavplan {
@@ -29,6 +31,8 @@ constexpr double worth_a_dig = 0.015;    // of ground brought into shape by any 
 constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
 constexpr int most_passes = 6;           // along the floor from one station
 constexpr int most_fruitless = 2;        // passes in succession that took nothing off
+constexpr int most_fruitless_digs = 3;   // likewise of digs for volume
+constexpr double least_mass = 15.0;      // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
 constexpr double high_share = 0.8;       // of the tolerance: higher cells call for a pass
 constexpr double most_high = 0.02;       // share of cells that may stay so
@@ -147,6 +151,12 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   step.dump = dump->place;
   if (dump->in_truck) step.truck = record.trucks;
   step.predicted = record.learning.foretell(dig->dig);
+  const auto down = way_down(machine, step.path, boom_plane_profile(dig->surface));
+  if (const auto* poses = std::get_if<std::vector<DigPose>>(&down)) step.path.approach = *poses;
+  const StepMotion motion = checked_motion(settings, now, step);
+  step.warnings = motion.warnings;
+  step.trustworthy = motion.is_trustworthy;
+  step.reason = motion.blocked;
   record.planned = dig->dig;
   record.strength_share = dig->strength_share;
   return step;
@@ -185,7 +195,9 @@ JobStep SiteJob::State::decide() {
   const bool is_fresh = ground.unseen().empty();
   if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
-  if (auto step = dig_step(false)) return *std::move(step);
+  if (record.fruitless_digs < most_fruitless_digs) {
+    if (auto step = dig_step(false)) return *std::move(step);
+  }
   if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
   if (record.passes_here < most_passes && record.fruitless < most_fruitless && wants_passes()) {
     if (auto step = dig_step(true)) return *std::move(step);
@@ -194,6 +206,7 @@ JobStep SiteJob::State::decide() {
     ++record.station;
     record.passes_here = 0;
     record.fruitless = 0;
+    record.fruitless_digs = 0;
     return move_step();
   }
   const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
@@ -224,12 +237,11 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   JobProgress& progress = record.progress;
   const bool finishing = step.what == JobAction::finish;
   ++(finishing ? progress.finishing_passes : progress.digs);
-  if (finishing) {
-    ++record.passes_here;
-    const double lifted = report.payload_mass.value_or(step.predicted.payload_mass);
-    const bool is_fruitless = report.stalled || lifted < least_taken * step.predicted.payload_mass;
-    record.fruitless = is_fruitless ? record.fruitless + 1 : 0;
-  }
+  if (finishing) ++record.passes_here;
+  const double lifted = report.payload_mass.value_or(step.predicted.payload_mass);
+  const double least = std::max(least_taken * step.predicted.payload_mass, least_mass);
+  int& fruitless = finishing ? record.fruitless : record.fruitless_digs;
+  fruitless = report.stalled || lifted < least ? fruitless + 1 : 0;
   progress.payload_mass += report.payload_mass.value_or(step.predicted.payload_mass);
   if (report.stalled) {
     ++progress.stalls;

@@ -154,7 +154,7 @@ class StepSearch {
     if (!(longest > shortest_drag)) return;
     for (const double fill : fills) {
       const double drag =
-          std::min(drag_that_fills(views_[lane], from, layer.height, fill), longest);
+          std::min(drag_that_fills(views_[lane], {from, layer.height}, fill), longest);
       if (drag == last) break;
       add(lane, {layer.angle, layer.depth / std::sin(layer.angle), drag}, start, rules);
       last = drag;
@@ -189,8 +189,14 @@ class StepSearch {
     return col > 0 && col < view.columns() && view.excess(col, task_.allowance) > least_excess;
   }
 
+  struct DragStart {
+    double x;       ///< [m]
+    double height;  ///< [m]
+  };
+
   /// The length of a drag at this height that meets so much soil.
-  double drag_that_fills(const LaneView& view, double from, double height, double fill) const {
+  double drag_that_fills(const LaneView& view, const DragStart& start, double fill) const {
+    const auto [from, height] = start;
     const double cell = view.surface().cell_size;
     const double bulking =
         (1.0 + simulator_.loose().void_ratio) / (1.0 + simulator_.bank().void_ratio);
@@ -245,6 +251,7 @@ class StepSearch {
     step.path = candidate.path;
     step.dig = found->dig;
     step.result = std::move(found->result);
+    step.surface = view.surface();
     step.change = view.change(step.result.patch, task_.slack);
     double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
     if (!(shaped > 0.0)) shaped = lifted_worth * step.dig.payload_volume;

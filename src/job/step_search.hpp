@@ -41,6 +41,7 @@ struct StepDig {
   DigPath path;       ///< in the frame of the lane
   PlannedDig dig;     ///< with its cycle
   DigResult result;   ///< of the ground of its lane
+  HeightMap surface;  ///< of its lane before it [m]
   ShapeChange change;
   double strength_share = 0.0;  ///< of ln of the energy in ln of the soil's strength [-]
   double worth = 0.0;           ///< volume of the design per cost of the cycle [m^3/J]

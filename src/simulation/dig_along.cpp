@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
 
@@ -28,6 +29,7 @@ constexpr double room_beside = 1.5;  // of the bucket, likewise [m]
 constexpr double unchanged = 1e-12;  // less is no change of a layer [m]
 constexpr int sweeps_of_a_heap = 2000;
 constexpr int places_a_side = 3;
+constexpr std::size_t most_places = 9;
 
 /// Void ratio of a cell: of the terrain's layer, or where it has none.
 double void_ratio(const ArrayXXd& layer, double otherwise, Cell cell) {
@@ -75,9 +77,14 @@ class Places {
   const HeightMap& site_;
   const DigLine& line_;
   const HeightMap& view_;
-  std::array<Cell, places_a_side * places_a_side> known_{};
+  std::array<Cell, most_places> known_{};
   std::size_t count_ = 0;
 };
+
+const Terrain& checked(const Terrain& site) {
+  require_terrain(site, "ground along a line");
+  return site;
+}
 
 Terrain seen_along(const Terrain& site, const DigLine& line, HeightMap view) {
   Terrain along;
@@ -310,12 +317,10 @@ SoilVoids soil_voids(const SoilKind& soil, double density_percent) {
           soil.specific_gravity * water_density};
 }
 
-GroundAlong::GroundAlong(const Terrain& site, const DigLine& line, const Rectangle& extent,
+GroundAlong::GroundAlong(const Terrain& site, DigLine line, const Rectangle& extent,
                          double cell_size)
-    : line_(line) {
-  require_terrain(site, "ground along a line");
-  along_ = seen_along(site, line_, flat_ground(extent, cell_size));
-}
+    : line_(std::move(line)),
+      along_(seen_along(checked(site), line_, flat_ground(extent, cell_size))) {}
 
 void GroundAlong::enter(const Terrain& site, const SoilVoids& voids, DigResult& dig) const {
   const TerrainPatch& patch = dig.patch;
@@ -337,16 +342,15 @@ Rectangle extent_along(const Machine& machine, const DigPath& path) {
 }
 
 DigResult dig_along(const SoilSimulator& simulator, const Machine& machine, const Terrain& site,
-                    const DigLine& line, const SoilVoids& voids, const DigPath& path,
-                    const DigOptions& options) {
+                    const LineDig& dig, const DigOptions& options) {
   const double cell = site.bank.cell_size;
-  const Rectangle extent = extent_along(machine, path);
+  const Rectangle extent = extent_along(machine, dig.path);
   const auto down = [&](double value) { return cell * std::floor(value / cell); };
   const Rectangle on_lines = {down(extent.x_min), down(extent.y_min), extent.x_max, extent.y_max};
-  const GroundAlong along(site, line, on_lines, cell);
-  DigResult dig = simulator.dig(along.terrain(), path, options);
-  along.enter(site, voids, dig);
-  return dig;
+  const GroundAlong along(site, dig.line, on_lines, cell);
+  DigResult result = simulator.dig(along.terrain(), dig.path, options);
+  along.enter(site, dig.voids, result);
+  return result;
 }
 
 void heap_soil(Terrain& site, const SoilKind& soil, double density_percent, const Vector2d& place,

@@ -197,7 +197,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   });
   const Terrain before = ground;
   const DigResult dug =
-      dig_along(*simulator, machine, ground, line, soil_voids(site.soil, density), path);
+      dig_along(*simulator, machine, ground, {line, soil_voids(site.soil, density), path});
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
   require_reach(job, dump_at);

@@ -52,11 +52,11 @@ TEST(DigAlong, PayloadAndEnergyAreThoseOfEveryHeading) {
   const SoilVoids voids = soil_voids(loam(), 50.0);
   const Terrain site = ringed_site();
   const DigPath path = path_from(6.0);
-  const DigResult straight = dig_along(simulator, zx120(), site, {}, voids, path);
+  const DigResult straight = dig_along(simulator, zx120(), site, {{}, voids, path});
   ASSERT_GT(straight.payload_mass, 200.0);
   for (int i = 0; i < 24; ++i) {
     const DigLine line = {{0.0, 0.0}, 0.0, 2.0 * pi * i / 24.0};
-    const DigResult dig = dig_along(simulator, zx120(), site, line, voids, path);
+    const DigResult dig = dig_along(simulator, zx120(), site, {line, voids, path});
     EXPECT_NEAR(dig.payload_mass, straight.payload_mass, 0.02 * straight.payload_mass) << i;
     EXPECT_NEAR(dig.energy.total, straight.energy.total, 0.02 * straight.energy.total) << i;
     EXPECT_NEAR(dig.soil.solids_after, dig.soil.solids_before, 1e-9 * dig.soil.solids_before) << i;
@@ -93,7 +93,7 @@ TEST(DigAlong, WallsStayWhereTheyAreWhenTheSameLineIsDugAgain) {
     const GroundAlong seen(site, line, planning_extent(zx120()), 0.05);
     const auto path = make_dig_path(zx120(), {pi / 4.0, 1.0, 1.5}, 6.5,
                                     boom_plane_profile(seen.terrain()), options);
-    site = dig_along(simulator, zx120(), site, line, voids, std::get<DigPath>(path)).after(site);
+    site = dig_along(simulator, zx120(), site, {line, voids, std::get<DigPath>(path)}).after(site);
   }
   double beside = 0.0;
   double deepest = 1.0;

@@ -77,7 +77,6 @@ void add_motion(const std::string& folder, const SiteJob& job, JobStep& step, Ou
     const std::string file = folder + "/motion-" + std::to_string(step.id) + ".csv";
     write_file(file, to_csv(timed));
     outcome.json["trajectory"] = file;
-    step.warnings.insert(step.warnings.end(), timed.warnings.begin(), timed.warnings.end());
   }
   for (const Warning& each : step.warnings) {
     if (each.ends_trust) step.trustworthy = false;

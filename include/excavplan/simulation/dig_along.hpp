@@ -46,7 +46,7 @@ class GroundAlong {
   /// @param extent  along the line and across it [m]
   /// @param cell_size  of the view [m]
   /// @throws Error (bad_input) as require_terrain() and flat_ground()
-  GroundAlong(const Terrain& site, const DigLine& line, const Rectangle& extent, double cell_size);
+  GroundAlong(const Terrain& site, DigLine line, const Rectangle& extent, double cell_size);
 
   const Terrain& terrain() const { return along_; }  ///< to dig on: x along the line, z of the path
   const DigLine& line() const { return line_; }
@@ -68,12 +68,17 @@ class GroundAlong {
 /// Room around a path that its dig may change, along the line and across it [m].
 Rectangle extent_along(const Machine& machine, const DigPath& path);
 
+/// A dig of a site.
+struct LineDig {
+  DigLine line;
+  SoilVoids voids;  ///< of the soil that is dug
+  DigPath path;     ///< in the frame of the line
+};
+
 /// One dig on the ground of a site: GroundAlong around the path, `simulator` on it, enter().
-/// @param path  in the frame of the line
 /// @throws Error (bad_input) as SoilSimulator::dig()
 DigResult dig_along(const SoilSimulator& simulator, const Machine& machine, const Terrain& site,
-                    const DigLine& line, const SoilVoids& voids, const DigPath& path,
-                    const DigOptions& options = {});
+                    const LineDig& dig, const DigOptions& options = {});
 
 /// Heaps loose soil on the ground, a cone that slides until it is at rest.
 /// @param volume  as it lies loose [m^3], >= 0

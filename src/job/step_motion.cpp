@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/step_motion.hpp"
+
+#include <algorithm>
+
+#include <excavplan/job/job_motion.hpp>
+#include <excavplan/planning/standing_ground.hpp>
+#include <excavplan/simulation/dig_along.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+namespace excavplan {
+namespace {
+
+constexpr double standing_cell = 0.1;  // of the ground under the machine; ours [m]
+
+}  // namespace
+
+StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, const JobStep& step) {
+  const Machine& machine = settings.site.machine;
+  StepMotion checked;
+  checked.warnings = standing_ground(machine, GroundAlong(ground, dig_line(step.base),
+                                                          standing_extent(machine), standing_cell)
+                                                  .terrain()
+                                                  .surface())
+                         .warnings;
+  const auto motion = motion_of(settings, ground, step);
+  if (const auto* stopped = std::get_if<BlockedWay>(&motion)) {
+    checked.blocked = stopped->message;
+    return checked;
+  }
+  const std::vector<Warning>& more = std::get<Trajectory>(motion).warnings;
+  checked.warnings.insert(checked.warnings.end(), more.begin(), more.end());
+  checked.is_trustworthy = std::none_of(checked.warnings.begin(), checked.warnings.end(),
+                                        [](const Warning& each) { return each.ends_trust; });
+  return checked;
+}
+
+}  // namespace excavplan

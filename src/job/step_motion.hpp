@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_settings.hpp>
+#include <excavplan/job/job_step.hpp>
+
+/// @file
+/// Whether the motion of a step over its whole cycle can be trusted. Private to the
+/// project.
+
+namespace excavplan {
+
+/// What is found of the motion of a step.
+struct StepMotion {
+  std::vector<Warning> warnings;  ///< of the motion, and of the ground that the machine stands on
+  std::string blocked;            ///< what is in the way; empty: nothing
+  bool is_trustworthy = false;    ///< not blocked, and no warning that ends trust
+};
+
+/// motion_of() a dig and standing_ground().
+StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, const JobStep& step);
+
+}  // namespace excavplan
