@@ -326,14 +326,14 @@ TEST_F(LawFile, WhatItWasMeasuredOnIsReadBack) {
   EXPECT_FALSE(load(to_json(made)).path);  // files without these keys are read too
   made.soil = "loam";
   made.machine = "zx120";
-  made.simulator = "height-map 3";
+  made.simulator = "height-map 4";
   made.path = {1.0, 0.5, 2.5};
   made.any_path = true;
   std::get<DensityClosedForm>(made.forms[2].form).residual_growth = 0.5;
   for (const DensityLaw& law : {load(to_json(made)), excavplan::law_of(made)}) {
     EXPECT_EQ(law.soil, "loam");
     EXPECT_EQ(law.machine, "zx120");
-    EXPECT_EQ(law.simulator, "height-map 3");
+    EXPECT_EQ(law.simulator, "height-map 4");
     EXPECT_EQ(law.path, made.path);
     EXPECT_TRUE(law.any_path);
     EXPECT_NEAR(residual_sd_at(law.form, 50.0), 0.75, 1e-12);
