@@ -17,11 +17,12 @@ namespace {
 class PlanSite : public BadInput {
  protected:
   std::string grid(const std::string& name, const std::function<double(double, double)>& height) {
-    const int cols = 180, rows = 140;
-    std::string text = "ncols 180\nnrows 140\nxllcorner -8\nyllcorner -7\ncellsize 0.1\n";
+    const double cell = 0.05;
+    const int cols = 360, rows = 280;
+    std::string text = "ncols 360\nnrows 280\nxllcorner -8\nyllcorner -7\ncellsize 0.05\n";
     for (int row = rows - 1; row >= 0; --row) {
       for (int col = 0; col < cols; ++col) {
-        text += std::to_string(height(-7.95 + 0.1 * col, -6.95 + 0.1 * row)) + ' ';
+        text += std::to_string(height(-8.0 + cell * (col + 0.5), -7.0 + cell * (row + 0.5))) + ' ';
       }
       text += '\n';
     }
