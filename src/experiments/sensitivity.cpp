@@ -48,7 +48,7 @@ class Reference {
     const auto path = layout_.path_from(parameters, x);
     if (const auto* stop = std::get_if<Infeasible>(&path)) return DigFailure(*stop);
     return dig_of_path(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
-                     model_.search.objective);
+                       model_.search.objective);
   }
 
   const DigModel& model_;

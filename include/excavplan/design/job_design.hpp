@@ -56,7 +56,7 @@ struct JobDesign {
   std::string scan_file = {};             ///< the first scan; empty: none
   double tolerance = 0.03;                ///< [m], > 0
   double edge_margin = 0.1;               ///< CutOptions::edge_margin [m]
-  std::optional<BasePose> start = {};  ///< z: 0
+  std::optional<BasePose> start = {};     ///< z: 0
   std::vector<KeepOut> keep_out = {};
   std::vector<JobObstacle> obstacles = {};
   std::vector<DumpArea> dump_areas = {};
