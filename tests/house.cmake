@@ -25,6 +25,22 @@ foreach(file IN LISTS headers programs)
   endif()
 endforeach()
 
+# A type of the library's namespace has one definition: of two that are linked into one program one
+# would take the other's members.
+set(types "")
+foreach(file IN LISTS headers)
+  if(file MATCHES "^(include|src)/")
+    file(STRINGS ${ROOT}/${file} lines REGEX "^(struct|class|enum class) [A-Za-z0-9]+( final)?( :.*)? {")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^(struct|class|enum class) ([A-Za-z0-9]+).*" "\\2" type "${line}")
+      if(type IN_LIST types)
+        message(SEND_ERROR "${file}: ${type} is the name of a type of another header too")
+      endif()
+      list(APPEND types ${type})
+    endforeach()
+  endif()
+endforeach()
+
 # The version is that of project() wherever else it stands.
 file(STRINGS ${ROOT}/CMakeLists.txt line REGEX "^project\\(excavplan VERSION ")
 string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${line}")

@@ -326,7 +326,7 @@ std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope
   return best.overlay;
 }
 
-Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column) {
+CellsAround surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column) {
   constexpr std::size_t enough = 5;
   struct Neighbour {
     double z = 0.0, x = 0.0, y = 0.0;
@@ -341,7 +341,7 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
   std::sort(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Neighbour& a, const Neighbour& b) { return a.z < b.z; });
   const std::size_t dropped = count >= enough ? 1 : 0;
-  Surroundings result{around[dropped].z, around[count - 1 - dropped].z};
+  CellsAround result{around[dropped].z, around[count - 1 - dropped].z};
   if (dropped == 0) return result;
   Moments kept;
   for (std::size_t i = 1; i + 1 < count; ++i) {

@@ -104,7 +104,7 @@ struct CellHeight {
 };
 
 /// Levels of the 3 x 3 cells around.
-struct Surroundings {
+struct CellsAround {
   double low = 0.0;  ///< extreme levels, but for the farthest on each side where
                      ///< five are known
   double high = 0.0;
@@ -114,7 +114,7 @@ struct Surroundings {
   double off_plane_all = off_plane;                            ///< of all levels
 };
 
-Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column);
+CellsAround surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column);
 
 /// The mean height of the ground at the centre of a cell, above the reference, from points that
 /// need not be spread evenly.

@@ -121,7 +121,7 @@ Cover lower_to_ground(PointsByCell& points, GroundLevels& levels, double group_s
   std::vector<float> heights;
   const Index rows = levels.height.rows();
   points.for_each_group([&](Index group, CellRange in_group) {
-    const Surroundings around = surroundings_of(levels.height, group % rows, group / rows);
+    const CellsAround around = surroundings_of(levels.height, group % rows, group / rows);
     if (const auto both = overlay_in(in_group, around.slope, gap, heights)) {
       overlays[group] = *both;
     }
@@ -165,7 +165,7 @@ double GroundBands::reach_of(double off_plane) const {
 Band GroundBands::by_groups(Index cell) const {
   const Index group = points_.group_of(cell);
   const Index rows = levels_.height.rows();
-  Surroundings around = surroundings_of(levels_.height, group % rows, group / rows);
+  CellsAround around = surroundings_of(levels_.height, group % rows, group / rows);
   if (points_.in_group(group) >= trusted) {
     const double level = levels_.height(group);
     around.low = std::min(around.low, level);
@@ -190,7 +190,7 @@ Band GroundBands::band(Index cell) const {
   Band band = by_groups(cell);
   if (fine_.size() == 0 || std::isnan(fine_(cell))) return band;
   const Index rows = fine_.rows();
-  const Surroundings around = surroundings_of(fine_, cell % rows, cell / rows);
+  const CellsAround around = surroundings_of(fine_, cell % rows, cell / rows);
   const double off = std::max(around.off_plane, std::abs(fine_(cell) - around.plane));
   if (reach_of(off) >= band.reach) return band;
   band.plane = around.plane;

@@ -112,8 +112,8 @@ void for_each_face(const DesignSurface& design, const HeightMap& grid, Visit vis
 }
 
 /// The cells between two places along an axis, as far as there are so many.
-struct CellRange {
-  CellRange(const Piece& piece, Eigen::Index axis, double cell, Eigen::Index cells) {
+struct CellSpan {
+  CellSpan(const Piece& piece, Eigen::Index axis, double cell, Eigen::Index cells) {
     const auto most = static_cast<double>(cells);
     first = static_cast<Eigen::Index>(std::clamp(std::floor(piece.lowest(axis) / cell), 0.0, most));
     end = static_cast<Eigen::Index>(std::clamp(std::ceil(piece.highest(axis) / cell), 0.0, most));
@@ -126,13 +126,13 @@ struct CellRange {
 template <typename Visit>
 void for_each_part(const Piece& face, const HeightMap& grid, Visit visit) {
   const double cell = grid.cell_size;
-  const CellRange rows(face, 1, cell, grid.z.rows());
+  const CellSpan rows(face, 1, cell, grid.z.rows());
   for (Eigen::Index row = rows.first; row < rows.end; ++row) {
     const double low = cell * static_cast<double>(row);
     const double high = cell * static_cast<double>(row + 1);
     const Piece strip = part_between(face, 1, low, high);
     if (strip.is_empty()) continue;
-    const CellRange cols(strip, 0, cell, grid.z.cols());
+    const CellSpan cols(strip, 0, cell, grid.z.cols());
     for (Eigen::Index col = cols.first; col < cols.end; ++col) {
       const double left = cell * static_cast<double>(col);
       const double right = cell * static_cast<double>(col + 1);

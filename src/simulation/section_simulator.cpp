@@ -78,7 +78,7 @@ class SectionDig {
   }
 
  private:
-  static Reach reach(const Machine& machine, const DigPath& path) {
+  static TipReach reach(const Machine& machine, const DigPath& path) {
     const std::vector<Vector2d>& profile = machine.bucket.profile;
     const Rectangle strip = swept_strip(machine, path);
     return {strip.x_min, strip.x_max, (profile[2] - profile[0]).norm()};

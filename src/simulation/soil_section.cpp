@@ -94,7 +94,7 @@ std::string span(double from, double to) {
 }
 
 /// The cells that the bucket passes.
-CellBlock cells_under(const HeightMap& map, const Swath& swath, const Reach& reach) {
+CellBlock cells_under(const HeightMap& map, const Swath& swath, const TipReach& reach) {
   const Rectangle extent = map.extent();
   if (!(reach.x_min >= extent.x_min && reach.x_max < extent.x_max)) {
     throw Error(ErrorKind::bad_input,
@@ -115,7 +115,7 @@ CellBlock cells_under(const HeightMap& map, const Swath& swath, const Reach& rea
 }
 
 /// These cells and room around them, the first extent of the section.
-CellBlock with_room(const CellBlock& cells, const HeightMap& map, const Reach& reach) {
+CellBlock with_room(const CellBlock& cells, const HeightMap& map, const TipReach& reach) {
   const auto cells_in = [&](double length) {
     return static_cast<Index>(std::ceil(length / map.cell_size));
   };
@@ -244,7 +244,7 @@ class MapWriter {
 // ---- The ground under the bucket ----------------------------------------------------------------
 
 SoilSection::SoilSection(const Terrain& terrain, const GroundSoil& soil, double width,
-                         const Reach& reach)
+                         const TipReach& reach)
     : swath_(terrain.bank, width, rounding),
       ground_(terrain, soil,
               with_room(cells_under(terrain.bank, swath_, reach), terrain.bank, reach)),
@@ -255,7 +255,7 @@ SoilSection::SoilSection(const Terrain& terrain, const GroundSoil& soil, double 
   cover_columns(reach);
 }
 
-void SoilSection::cover_columns(const Reach& reach) {
+void SoilSection::cover_columns(const TipReach& reach) {
   const CellBlock path = cells_under(ground_.before().bank, swath_, reach);
   first_col_ = path.col_begin;
   for (Index col = path.col_begin; col < path.col_end; ++col) columns_.push_back(mean_column(col));

@@ -55,7 +55,7 @@ struct GroundAhead {
 };
 
 /// Where a tip works.
-struct Reach {
+struct TipReach {
   double x_min = 0.0;
   double x_max = 0.0;
   double behind = 0.0;  ///< how far the bucket extends behind its tip
@@ -67,7 +67,7 @@ class SoilSection {
  public:
   /// Covers known ground around the reach.
   /// @throws Error (bad_input) if a cell the bucket passes is off the map or unknown
-  SoilSection(const Terrain& terrain, const GroundSoil& soil, double width, const Reach& reach);
+  SoilSection(const Terrain& terrain, const GroundSoil& soil, double width, const TipReach& reach);
 
   GroundWindow& ground() { return ground_; }
   double width() const { return width_; }
@@ -115,7 +115,7 @@ class SoilSection {
  private:
   std::size_t index(Eigen::Index col) const { return static_cast<std::size_t>(col - first_col_); }
   Column& at(Eigen::Index col) { return columns_[index(col)]; }
-  void cover_columns(const Reach& reach);
+  void cover_columns(const TipReach& reach);
   bool grow_ahead();
   bool grow_behind();
   Column mean_column(Eigen::Index col);

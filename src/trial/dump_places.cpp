@@ -43,8 +43,8 @@ double pin_reach(const Machine& machine, double height) {
   return machine.boom_pin.x() + std::sqrt(length * length - up * up);
 }
 
-DumpPlace DumpPlaces::from(const BasePose& base, double heading, const SeenGround& ground) const {
-  DumpPlace best = {{base.x, base.y, base.z + least_height}, {}};
+PlainDump DumpPlaces::from(const BasePose& base, double heading, const LastSeenGround& ground) const {
+  PlainDump best = {{base.x, base.y, base.z + least_height}, {}};
   double least = std::numeric_limits<double>::infinity();
   const auto look = [&](const SitePolygon& area, double margin, std::optional<double> bed) {
     Eigen::Vector2d low = area.front(), high = area.front();

@@ -15,7 +15,7 @@
 namespace excavplan {
 
 /// Where a dig is dumped.
-struct DumpPlace {
+struct PlainDump {
   Eigen::Vector3d pin;       ///< of the bucket, in the site [m]
   std::optional<int> truck;  ///< from 1
   bool in_reach = false;
@@ -28,7 +28,7 @@ class DumpPlaces {
   DumpPlaces(JobDesign job, Machine machine) : job_(std::move(job)), machine_(std::move(machine)) {}
 
   /// @param heading  of the dig [rad]
-  DumpPlace from(const BasePose& base, double heading, const SeenGround& ground) const;
+  PlainDump from(const BasePose& base, double heading, const LastSeenGround& ground) const;
   /// The payload of the last dig was dumped [kg].
   void loaded(double payload);
 

@@ -113,13 +113,13 @@ SoilKind true_soil(SoilKind soil, double strength, double water) {
 
 }  // namespace
 
-double DensityField::at(double x, double y, double z) const {
+double TrueDensity::at(double x, double y, double z) const {
   const double even = height_at(percent, x, y);
   if (gradient == 0.0) return std::clamp(even, least_even, most_even);
   return std::clamp(even + gradient * (datum - z), 0.0, 100.0);
 }
 
-void set_void_ratios(const DensityField& density, const SoilKind& soil, Terrain& ground) {
+void set_void_ratios(const TrueDensity& density, const SoilKind& soil, Terrain& ground) {
   const double span = soil.void_ratio_max - soil.void_ratio_min;
   ground.bank_void_ratio = ground.bank.z;
   for_each_cell(ground.bank.z, [&](Cell at) {

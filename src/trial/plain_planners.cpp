@@ -388,10 +388,10 @@ class PlainPlanner : public JobPlanner {
   SiteBrief site_;
   Machine machine_;
   Axis axis_;
-  SeenGround ground_;
+  LastSeenGround ground_;
   HeightMap design_;  ///< NaN where nothing is to be dug
   DumpPlaces dumps_;
-  DumpPlace dump_;  ///< of the present step
+  PlainDump dump_;  ///< of the present step
   BasePose base_;
   DigParameters numbers_ = paper_fixed_path();
   double least_height_ = 1e9;  ///< of the design [m]

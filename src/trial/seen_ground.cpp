@@ -9,7 +9,7 @@
 
 namespace excavplan {
 
-void SeenGround::take(const Scan& scan) {
+void LastSeenGround::take(const Scan& scan) {
   Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(map_.z.rows(), map_.z.cols());
   Eigen::ArrayXXd count = sum;
   for (const auto& cloud : scan.clouds) {
@@ -23,7 +23,7 @@ void SeenGround::take(const Scan& scan) {
   map_.z = (count > 0.0).select(sum / count, map_.z);
 }
 
-double SeenGround::at(double x, double y) const {
+double LastSeenGround::at(double x, double y) const {
   const auto cell = cell_at(map_, x, y);
   if (!cell) return std::numeric_limits<double>::quiet_NaN();
   const double here = map_.z(cell->row, cell->col);

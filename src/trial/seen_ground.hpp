@@ -8,9 +8,9 @@
 namespace excavplan {
 
 /// The ground as the last scans of each cell show it.
-class SeenGround {
+class LastSeenGround {
  public:
-  explicit SeenGround(HeightMap first) : map_(std::move(first)) {}
+  explicit LastSeenGround(HeightMap first) : map_(std::move(first)) {}
 
   /// A cell with returns gets their mean height. The scan is in the frame of the site.
   void take(const Scan& scan);

@@ -43,7 +43,7 @@ TEST(HiddenSite, VoidRatiosOfTheSiteReplaceThoseOfTheSoil) {
 }
 
 TEST(HiddenSite, DensityGrowsWithDepthAndIsClipped) {
-  DensityField field;
+  TrueDensity field;
   field.percent = flat_ground({0, 0, 4, 4}, 0.5, 5.0);
   EXPECT_EQ(field.at(2, 2, 0.0), 10.0);  // without a gradient
   field.gradient = 30.0;

@@ -42,7 +42,7 @@ struct SiteBrief {
 };
 
 /// Where the bank is how dense.
-struct DensityField {
+struct TrueDensity {
   HeightMap percent;      ///< at no depth, in `z` [%]
   double gradient = 0.0;  ///< with depth [%/m]
   double datum = 0.0;     ///< height from which depth counts: mean of the ground on the axis [m]
@@ -69,7 +69,7 @@ struct HiddenSite {
   SiteBrief known;
   Terrain ground;  ///< at the start, in the site's frame, with void ratios of the bank
   SoilKind soil;   ///< as it is
-  DensityField density;
+  TrueDensity density;
   HiddenErrors errors;
   HeightMap first_scan;  ///< first scan as cells; NaN: not seen
 };
@@ -93,6 +93,6 @@ HiddenSite read_hidden_site(const std::string& folder, double cell_size = truth_
 /// Void ratios of the bank of a cell: that of the density at its top, as a terrain has one over the
 /// depth of a cell. So of a density that grows with depth they are set anew where the ground was
 /// dug (TrueSite).
-void set_void_ratios(const DensityField& density, const SoilKind& soil, Terrain& ground);
+void set_void_ratios(const TrueDensity& density, const SoilKind& soil, Terrain& ground);
 
 }  // namespace excavplan
