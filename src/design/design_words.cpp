@@ -10,6 +10,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/plan_geometry.hpp"
 #include "base/text.hpp"
 #include "clouds/file_stream.hpp"
 #include "ground/grid_cells.hpp"
@@ -20,23 +21,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// Along the line and to the left of it.
-class LineFrame {
- public:
-  explicit LineFrame(const DesignWords& words)
-      : from_(words.from), along_(std::cos(words.heading), std::sin(words.heading)) {}
-  Vector2d place(double along, double left) const {
-    return from_ + along * along_ + left * Vector2d(-along_.y(), along_.x());
-  }
-  Vector2d of(const Vector2d& place) const {
-    const Vector2d off = place - from_;
-    return {off.dot(along_), off.dot(Vector2d(-along_.y(), along_.x()))};
-  }
-
- private:
-  Vector2d from_, along_;
-};
 
 void require_words(const DesignWords& words) {
   require_in("design: length [m]", words.length, 0.1, 10000.0);
@@ -56,7 +40,7 @@ void require_words(const DesignWords& words) {
 }
 
 double mean_along(const DesignWords& words, const HeightMap& ground) {
-  const LineFrame line(words);
+  const PlanFrame line(words.from, words.heading);
   const auto steps =
       static_cast<int>(std::clamp(std::ceil(2.0 * words.length / ground.cell_size), 2.0, 1e6));
   double sum = 0.0;
@@ -76,7 +60,9 @@ double mean_along(const DesignWords& words, const HeightMap& ground) {
 class Shape {
  public:
   Shape(const DesignWords& words, const HeightMap& ground)
-      : words_(words), line_(words), is_slope_(words.kind == DesignKind::slope) {
+      : words_(words),
+        line_(words.from, words.heading),
+        is_slope_(words.kind == DesignKind::slope) {
     middle_z_ = words.floor_z ? *words.floor_z : mean_along(words, ground) - *words.depth;
     left_ = is_slope_ ? 0.0 : 0.5 * words.floor_width;
     right_ = is_slope_ ? -words.floor_width : -0.5 * words.floor_width;
@@ -141,7 +127,7 @@ class Shape {
   }
 
   const DesignWords& words_;
-  LineFrame line_;
+  PlanFrame line_;
   bool is_slope_;
   double middle_z_ = 0.0;
   double left_ = 0.0, right_ = 0.0;  // of the floor, from the line

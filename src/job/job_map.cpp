@@ -11,6 +11,7 @@
 #include <excavplan/design/cut_and_fill.hpp>
 
 #include "base/check.hpp"
+#include "base/plan_geometry.hpp"
 #include "ground/window.hpp"
 
 namespace excavplan {
@@ -67,19 +68,6 @@ bool has_batter(const JobMap& map) {
 
 }  // namespace
 
-bool is_inside(const SitePolygon& polygon, const Vector2d& place) {
-  bool inside = false;
-  for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
-    const Vector2d& a = polygon[i];
-    const Vector2d& b = polygon[last];
-    if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-    if (place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
-
 void require_job_settings(const JobSettings& settings) {
   require_job(settings.design);
   require_machine(settings.site.machine);
@@ -119,17 +107,10 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
 }
 
 Vector2d JobFrame::place(double along, double beside) const {
-  const double c = std::cos(heading);
-  const double s = std::sin(heading);
-  return {origin.x() + c * along - s * beside, origin.y() + s * along + c * beside};
+  return PlanFrame(origin, heading).place(along, beside);
 }
 
-Vector2d JobFrame::of(const Vector2d& place) const {
-  const Vector2d offset = place - origin;
-  const double c = std::cos(heading);
-  const double s = std::sin(heading);
-  return {c * offset.x() + s * offset.y(), c * offset.y() - s * offset.x()};
-}
+Vector2d JobFrame::of(const Vector2d& place) const { return PlanFrame(origin, heading).of(place); }
 
 JobFrame frame_of(const JobSettings& settings, const JobMap& map) {
   const BasePose& start = *settings.design.start;

@@ -25,9 +25,6 @@ struct JobMap {
 /// @param ground  before the job
 JobMap map_of(const JobSettings& settings, const HeightMap& ground);
 
-/// Whether a place lies in a polygon (even-odd rule).
-bool is_inside(const SitePolygon& polygon, const Eigen::Vector2d& place);
-
 /// Where the design lies along the machine's line of work.
 struct JobFrame {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of the line [m]

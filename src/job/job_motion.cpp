@@ -10,6 +10,7 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"
+#include "base/plan_geometry.hpp"
 #include "base/text.hpp"
 #include "job/job_map.hpp"
 #include "planning/motion_load.hpp"
@@ -51,8 +52,9 @@ Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLi
   const Machine& machine = settings.site.machine;
   Terrain view = GroundAlong(site, line, swing_extent(machine), motion_cell).terrain();
   view.obstacles = Eigen::ArrayXXd::Constant(view.bank.z.rows(), view.bank.z.cols(), std::nan(""));
+  const PlanFrame frame(line.origin, line.heading);
   for_each_cell(view.bank.z, [&](Cell at) {
-    const Vector2d place = line.place(view.bank.x(at.col), view.bank.y(at.row));
+    const Vector2d place = frame.place(view.bank.x(at.col), view.bank.y(at.row));
     double& top = view.obstacles(at.row, at.col);
     const auto cell = cell_at(site.bank, place.x(), place.y());
     if (cell && site.obstacles.size() > 0) top = site.obstacles(cell->row, cell->col) - line.z;

@@ -11,6 +11,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/plan_geometry.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
@@ -41,18 +42,6 @@ double area_of(const Polygon& polygon) {
     twice += a.x() * b.y() - a.y() * b.x();
   }
   return 0.5 * std::abs(twice);
-}
-
-/// By the crossings of a ray along x.
-bool contains(const Polygon& polygon, const Vector2d& p) {
-  bool inside = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d& a = polygon[i];
-    const Vector2d& b = polygon[(i + 1) % polygon.size()];
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
 }
 
 /// The nearest place of the outline: how far away, and how far along [m].
@@ -251,7 +240,7 @@ class PolygonGround {
     for (int x = 0; x < along; ++x) {
       for (int y = 0; y < along; ++y) {
         const Vector2d off((x + 0.5) / along - 0.5, (y + 0.5) / along - 0.5);
-        if (contains(polygon_, place(at) + surface_.height.cell_size * off)) ++inside;
+        if (is_inside(polygon_, place(at) + surface_.height.cell_size * off)) ++inside;
       }
     }
     return static_cast<double>(inside) / (along * along);

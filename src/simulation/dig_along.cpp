@@ -11,6 +11,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
+#include "base/plan_geometry.hpp"
 #include "earth/ground_window.hpp"
 #include "earth/slump.hpp"
 #include "ground/grid_cells.hpp"
@@ -36,13 +37,15 @@ double void_ratio(const ArrayXXd& layer, double otherwise, Cell cell) {
   return layer.size() == 0 ? otherwise : layer(cell.row, cell.col);
 }
 
+PlanFrame frame_of(const DigLine& line) { return {line.origin, line.heading}; }
+
 // ---- the view -----------------------------------------------------------------------------------
 
 /// The cells of a site in a cell of the view, some of them several times.
 class Places {
  public:
   Places(const HeightMap& site, const DigLine& line, const HeightMap& view)
-      : site_(site), line_(line), view_(view) {}
+      : site_(site), line_(frame_of(line)), view_(view) {}
 
   void look(Cell cell) {
     count_ = 0;
@@ -75,7 +78,7 @@ class Places {
   double offset(int i) const { return view_.cell_size * ((i + 0.5) / places_a_side - 0.5); }
 
   const HeightMap& site_;
-  const DigLine& line_;
+  PlanFrame line_;
   const HeightMap& view_;
   std::array<Cell, most_places> known_{};
   std::size_t count_ = 0;
@@ -127,7 +130,7 @@ struct SiteCell {
 class Entry {
  public:
   Entry(const Terrain& site, const DigLine& line, const Terrain& along, const SoilVoids& voids)
-      : site_(site), line_(line), along_(along), voids_(voids) {}
+      : site_(site), frame_(frame_of(line)), z_(line.z), along_(along), voids_(voids) {}
 
   void run(DigResult& dig) {
     find_cells(dig.patch);
@@ -151,10 +154,10 @@ class Entry {
     const double low = view.origin.y() + view.cell_size * static_cast<double>(patch.row);
     const double right = left + view.cell_size * static_cast<double>(patch.bank.cols());
     const double high = low + view.cell_size * static_cast<double>(patch.bank.rows());
-    Vector2d least = line_.place(left, low);
+    Vector2d least = frame_.place(left, low);
     Vector2d most = least;
     for (const Vector2d& corner :
-         {line_.place(left, high), line_.place(right, low), line_.place(right, high)}) {
+         {frame_.place(left, high), frame_.place(right, low), frame_.place(right, high)}) {
       least = least.cwiseMin(corner);
       most = most.cwiseMax(corner);
     }
@@ -173,10 +176,8 @@ class Entry {
 
   /// The cell of the view over the centre of one of the site.
   std::optional<Cell> in_view(Cell site) const {
-    const Vector2d offset = Vector2d(site_.bank.x(site.col), site_.bank.y(site.row)) - line_.origin;
-    const double c = std::cos(line_.heading);
-    const double s = std::sin(line_.heading);
-    return cell_at(along_.bank, c * offset.x() + s * offset.y(), c * offset.y() - s * offset.x());
+    const Vector2d place = frame_.of({site_.bank.x(site.col), site_.bank.y(site.row)});
+    return cell_at(along_.bank, place.x(), place.y());
   }
 
   void collect(const TerrainPatch& patch, Cell at) {
@@ -199,7 +200,7 @@ class Entry {
     const double loose_after = patch.loose(held.row, held.col);
     const double voids_after = void_ratio(patch.loose_void_ratio, voids_.loose, held);
     const double voids_before = void_ratio(along_.loose_void_ratio, voids_.loose, view);
-    const double level = patch.bank(held.row, held.col) + line_.z;
+    const double level = patch.bank(held.row, held.col) + z_;
     const double loose = site_.loose(cell.row, cell.col);
     const double solids_before = along_.loose(view.row, view.col) / (1.0 + voids_before);
     const double solids_after = loose_after / (1.0 + voids_after);
@@ -285,7 +286,8 @@ class Entry {
   }
 
   const Terrain& site_;
-  const DigLine& line_;
+  PlanFrame frame_;
+  double z_;  ///< of the path's z = 0 [m]
   const Terrain& along_;
   const SoilVoids& voids_;
   Cell first_{};
@@ -297,11 +299,7 @@ class Entry {
 
 }  // namespace
 
-Vector2d DigLine::place(double x, double y) const {
-  const double c = std::cos(heading);
-  const double s = std::sin(heading);
-  return {origin.x() + c * x - s * y, origin.y() + s * x + c * y};
-}
+Vector2d DigLine::place(double x, double y) const { return frame_of(*this).place(x, y); }
 
 DigLine dig_line(const BasePose& base, double swung, double lane) {
   DigLine line;

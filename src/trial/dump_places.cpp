@@ -27,7 +27,7 @@ constexpr double of_height = 0.7;     // swing that a metre of heap is worth [ra
 bool is_well_in(const SitePolygon& area, const Eigen::Vector2d& at, double margin) {
   for (int i = 0; i < 8; ++i) {
     const double angle = 0.25 * pi * i;
-    if (!is_in(area, at.x() + margin * std::cos(angle), at.y() + margin * std::sin(angle))) {
+    if (!is_inside(area, {at.x() + margin * std::cos(angle), at.y() + margin * std::sin(angle)})) {
       return false;
     }
   }
@@ -43,7 +43,8 @@ double pin_reach(const Machine& machine, double height) {
   return machine.boom_pin.x() + std::sqrt(length * length - up * up);
 }
 
-PlainDump DumpPlaces::from(const BasePose& base, double heading, const LastSeenGround& ground) const {
+PlainDump DumpPlaces::from(const BasePose& base, double heading,
+                           const LastSeenGround& ground) const {
   PlainDump best = {{base.x, base.y, base.z + least_height}, {}};
   double least = std::numeric_limits<double>::infinity();
   const auto look = [&](const SitePolygon& area, double margin, std::optional<double> bed) {

@@ -12,6 +12,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/plan_geometry.hpp"
 #include "ground/grid_cells.hpp"
 #include "trial/dump_places.hpp"
 #include "trial/seen_ground.hpp"
@@ -30,28 +31,6 @@ constexpr double scratch = 0.02;                // beside the design [m]
 constexpr int evaluations = 200;                // of the one search of "greedy"
 constexpr double sample = 0.05;                 // along a lane and over it [m]
 
-/// Along the line of the design and to its left.
-class Axis {
- public:
-  explicit Axis(const DesignWords& words)
-      : from_(words.from),
-        heading_(words.heading),
-        ahead_(std::cos(heading_), std::sin(heading_)) {}
-  double heading() const { return heading_; }
-  double along(double x, double y) const { return (Vector2d(x, y) - from_).dot(ahead_); }
-  double left(double x, double y) const {
-    return (Vector2d(x, y) - from_).dot(Vector2d(-ahead_.y(), ahead_.x()));
-  }
-  Vector2d place(double along, double left) const {
-    return from_ + along * ahead_ + left * Vector2d(-ahead_.y(), ahead_.x());
-  }
-
- private:
-  Vector2d from_;
-  double heading_;
-  Vector2d ahead_;
-};
-
 /// A lane at a station.
 struct Lane {
   double left = 0.0;   ///< of the axis [m]
@@ -68,7 +47,7 @@ class PlainPlanner : public JobPlanner {
       : policy_(policy),
         site_(site),
         machine_(machine),
-        axis_(*site.job.words),
+        axis_(site.job.words->from, site.job.words->heading),
         ground_(first_scan),
         design_(first_scan),
         dumps_(site.job, machine),
@@ -125,8 +104,8 @@ class PlainPlanner : public JobPlanner {
         z = nan;
         return;
       }
-      const double along = axis_.along(design_.x(at.col), design_.y(at.row));
-      const double left = axis_.left(design_.x(at.col), design_.y(at.row));
+      const Vector2d place = axis_.of({design_.x(at.col), design_.y(at.row)});
+      const double along = place.x(), left = place.y();
       least_height_ = std::min(least_height_, z);
       least_along_ = std::min(least_along_, along);
       most_along_ = std::max(most_along_, along);
@@ -167,7 +146,8 @@ class PlainPlanner : public JobPlanner {
   // ---- stations and lanes ------------------------------------------------------------------
 
   double first_station() const { return most_along_ - policy_.farthest; }
-  double base_along() const { return axis_.along(base_.x, base_.y); }
+  double base_along() const { return axis_.of({base_.x, base_.y}).x(); }
+  double base_left() const { return axis_.of({base_.x, base_.y}).y(); }
   /// Ahead of the swing axis, between which a station digs [m].
   double far_end() const { return policy_.farthest; }
   double near_end() const { return policy_.farthest - policy_.station; }
@@ -221,10 +201,10 @@ class PlainPlanner : public JobPlanner {
   JobStep decide() {
     if (!is_placed_) {
       is_placed_ = true;
-      const double off = std::hypot(base_along() - first_station(), axis_.left(base_.x, base_.y));
+      const double off = std::hypot(base_along() - first_station(), base_left());
       if (off > 0.3) return move_to(first_station());
     }
-    dump_ = dumps_.from(base_, axis_.heading(), ground_);
+    dump_ = dumps_.from(base_, site_.job.words->heading, ground_);
     if (!dump_.in_reach) phase_ = Phase::leave;
     while (phase_ != Phase::leave) {
       if (at_ >= lanes_.size()) {
@@ -273,7 +253,7 @@ class PlainPlanner : public JobPlanner {
   JobStep move_to(double along) {
     JobStep step = step_of(JobAction::move);
     const Vector2d to = axis_.place(along, 0.5 * (least_left_ + most_left_));
-    step.base = {to.x(), to.y(), ground_.at(to.x(), to.y()), axis_.heading()};
+    step.base = {to.x(), to.y(), ground_.at(to.x(), to.y()), site_.job.words->heading};
     return step;
   }
 
@@ -360,8 +340,8 @@ class PlainPlanner : public JobPlanner {
 
   JobStep with(const DigPath& path, const Lane& lane, JobAction what) {
     JobStep step = step_of(what);
-    step.swung = std::remainder(axis_.heading() - base_.heading, 2.0 * pi);
-    step.lane = lane.left - axis_.left(base_.x, base_.y);
+    step.swung = std::remainder(site_.job.words->heading - base_.heading, 2.0 * pi);
+    step.lane = lane.left - base_left();
     step.path = path;
     step.dump = dump_.pin;
     step.truck = dump_.truck;
@@ -387,7 +367,7 @@ class PlainPlanner : public JobPlanner {
   PlainPolicy policy_;
   SiteBrief site_;
   Machine machine_;
-  Axis axis_;
+  PlanFrame axis_;  ///< of the design
   LastSeenGround ground_;
   HeightMap design_;  ///< NaN where nothing is to be dug
   DumpPlaces dumps_;

@@ -173,7 +173,7 @@ HeightMap with_obstacles(const HeightMap& surface, const std::vector<JobObstacle
   HeightMap seen = surface;
   for (const JobObstacle& obstacle : obstacles) {
     for_each_cell(seen.z, [&](Cell at) {
-      if (!is_in(obstacle.polygon, seen.x(at.col), seen.y(at.row))) return;
+      if (!is_inside(obstacle.polygon, {seen.x(at.col), seen.y(at.row)})) return;
       seen.z(at.row, at.col) = surface.z(at.row, at.col) + obstacle.height;
     });
   }

@@ -229,7 +229,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
 void TrueSite::State::dump(const JobStep& job, const DigResult& dig, const Vector2d& at) {
   if (!(dig.payload_volume > 0.0)) return;
   const auto& truck = site.known.job.truck;
-  if (job.truck && truck && is_in(truck->bed, at.x(), at.y())) {
+  if (job.truck && truck && is_inside(truck->bed, at)) {
     solids.hauled += dig.payload_volume * site.soil.specific_gravity * water_density /
                      (1.0 + site.soil.void_ratio_loose);
     return;

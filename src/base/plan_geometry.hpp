@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+/// @file
+/// Lines and polygons in plan. Private to the project.
+
+namespace excavplan {
+
+/// Along a line and to the left of it.
+class PlanFrame {
+ public:
+  PlanFrame(const Eigen::Vector2d& origin, double heading)
+      : origin_(origin), ahead_(std::cos(heading), std::sin(heading)) {}
+
+  Eigen::Vector2d place(double along, double left) const {
+    return origin_ + along * ahead_ + left * to_left();
+  }
+  /// (along, left) of a place.
+  Eigen::Vector2d of(const Eigen::Vector2d& place) const {
+    const Eigen::Vector2d off = place - origin_;
+    return {off.dot(ahead_), off.dot(to_left())};
+  }
+
+ private:
+  Eigen::Vector2d to_left() const { return {-ahead_.y(), ahead_.x()}; }
+
+  Eigen::Vector2d origin_, ahead_;
+};
+
+/// Whether a place lies in a polygon, by the crossings of a ray along x.
+inline bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& a = polygon[i];
+    const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace excavplan
