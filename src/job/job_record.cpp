@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "excavplan job";
 constexpr int version = 1;
-constexpr int numbers_of_pose = 7;
+constexpr int numbers_of_pose = 6;
 
 template <typename Value, std::size_t size>
 Value of_word(JsonObject& object, const char* key, const std::array<Value, size>& values) {
@@ -82,7 +82,7 @@ std::vector<DigPose> read_poses(std::vector<JsonObject> list) {
   for (JsonObject& each : list) {
     DigPose pose;
     pose.phase = of_word(each, "phase", phases);
-    const std::vector<double> numbers = each.numbers("pose", numbers_of_pose - 1);
+    const std::vector<double> numbers = each.numbers("pose", numbers_of_pose);
     pose.bucket = {numbers[0], numbers[1], numbers[2]};
     pose.joints = {numbers[3], numbers[4], numbers[5]};
     poses.push_back(pose);
@@ -230,7 +230,7 @@ void for_each_number(Record& record, Visit visit) {
   visit("deepest_cut_m", record.deepest_cut);
   visit("truck_load_kg", record.truck_load);
   visit("strength_share", record.strength_share);
-  visit("first_volume_m3", record.first_volume);
+  visit("first_volume_m3", record.progress.design_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
 }
 

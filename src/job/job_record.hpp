@@ -36,9 +36,8 @@ struct JobRecord {
   int fruitless = 0;                  ///< finishing passes in succession that lifted little
   double truck_load = 0.0;            ///< in the present truck [kg]
   int trucks = 1;                     ///< so far
-  double first_volume = 0.0;          ///< of the design when the job began [m^3]
   JobLearning learning;
-  JobProgress progress;  ///< counts alone
+  JobProgress progress;  ///< what is counted; what is measured of the ground is left out
 };
 
 /// @throws Error (bad_file) if it cannot be written

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/plan_geometry.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -43,8 +45,9 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
       dump_(Mask::Constant(surface_.z.rows(), surface_.z.cols(), false)),
       clear_(dump_),
       forbidden_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), -infinity)) {
+  const PlanFrame frame(line.origin, line.heading);
   for_each_cell(target_, [&](Cell at) {
-    const Eigen::Vector2d place = line.place(surface_.x(at.col), surface_.y(at.row));
+    const Eigen::Vector2d place = frame.place(surface_.x(at.col), surface_.y(at.row));
     const auto cell = cell_at(job.target, place.x(), place.y());
     if (!cell) return;
     target_(at.row, at.col) = job.target.z(cell->row, cell->col) - line.z;
@@ -90,15 +93,19 @@ GroundProfile LaneView::floor(double allowance) const {
 
 GroundProfile LaneView::profile() const { return between_columns(surface_, ground_at_); }
 
-double LaneView::excess(Index col, double allowance) const {
-  const double floor = floor_(col) + allowance;
-  if (std::isnan(floor)) return 0.0;
-  double sum = 0.0;
-  for (Index row = first_row_; row < end_row_; ++row) {
-    const double above = surface_.z(row, col) - floor;
-    if (above > 0.0) sum += above;
+ArrayXd LaneView::excess(double allowance) const {
+  ArrayXd excess = ArrayXd::Zero(columns());
+  for (Index col = 0; col < columns(); ++col) {
+    const double floor = floor_(col) + allowance;
+    if (std::isnan(floor)) continue;
+    double sum = 0.0;
+    for (Index row = first_row_; row < end_row_; ++row) {
+      const double above = surface_.z(row, col) - floor;
+      if (above > 0.0) sum += above;
+    }
+    excess(col) = sum / static_cast<double>(end_row_ - first_row_);
   }
-  return sum / static_cast<double>(end_row_ - first_row_);
+  return excess;
 }
 
 ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
@@ -116,14 +123,13 @@ ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
       if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
       return;
     }
+    const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));
+    change.gained += gained;
     if (clear_(cell.row, cell.col)) {
+      change.cleared += gained;
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -
                                std::max(0.0, std::abs(after - target) - slack));
     }
-    change.cleared += clear_(cell.row, cell.col)
-                          ? area * (std::max(0.0, before - target) - std::max(0.0, after - target))
-                          : 0.0;
-    change.gained += area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.too_deep +=
         area * (std::max(0.0, target - slack - after) - std::max(0.0, target - slack - before));
   });

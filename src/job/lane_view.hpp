@@ -37,10 +37,9 @@ class LaneView {
 
   Eigen::Index columns() const { return surface_.z.cols(); }
   double x(Eigen::Index col) const { return surface_.x(col); }
-  double floor_at(Eigen::Index col) const { return floor_(col); }       ///< [m]; NaN: not known
-  double ground_at(Eigen::Index col) const { return ground_at_(col); }  ///< likewise
-  /// Mean thickness of what is above the floor under the bucket [m].
-  double excess(Eigen::Index col, double allowance) const;
+  double ground_at(Eigen::Index col) const { return ground_at_(col); }  ///< [m]; NaN: not known
+  /// Mean thickness of what is above the floor under the bucket, of each column [m].
+  Eigen::ArrayXd excess(double allowance) const;
 
   /// @param slack  so far from the design ground is not too deep or out of shape [m]
   ShapeChange change(const TerrainPatch& patch, double slack) const;

@@ -6,9 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include <excavplan/simulation/dig_along.hpp>
-#include <excavplan/simulation/dig_ground.hpp>
-
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "job/dump_place.hpp"
@@ -23,10 +20,9 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr std::size_t most_unseen = 5;  // digs between two scans
-constexpr double least_gain = 0.12;     // of a dig for volume, over the bucket's capacity
-constexpr double least_shaped = 0.012;  // payload of a finishing pass [m^3]
-
+constexpr std::size_t most_unseen = 5;   // digs between two scans
+constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
+constexpr double least_shaped = 0.012;   // payload of a finishing pass [m^3]
 constexpr double worth_a_dig = 0.015;    // of ground brought into shape by any dig [m^3]
 constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
 constexpr int most_passes = 6;           // along the floor from one station
@@ -40,8 +36,20 @@ constexpr double least_seen = 0.99;      // of a finished design
 constexpr double after_stall = 0.7;      // of the depth of a cut
 constexpr double shallowest_cut = 0.06;  // [m]
 
-JobProgress measured(const JobMap& map, const Terrain& ground, double tolerance) {
-  JobProgress progress;
+/// A scan that tells the ground alone.
+SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
+  SiteEvent event;
+  event.scan = scan;
+  event.dug = false;
+  event.time = time;
+  event.base = base;
+  return event;
+}
+
+/// Sets what is measured of the ground.
+JobProgress measured(JobProgress progress, const JobMap& map, const Terrain& ground,
+                     double tolerance) {
+  progress.left_volume = 0.0;
   const double area = map.target.cell_size * map.target.cell_size;
   std::vector<double> errors;
   double squares = 0.0;
@@ -84,6 +92,10 @@ struct SiteJob::State {
     map = map_of(settings, first.bank);
     frame = frame_of(settings, map);
     stations = stations_of(frame, settings);
+  }
+
+  JobProgress progress_on(const Terrain& terrain) const {
+    return measured(record.progress, map, terrain, settings.design.tolerance);
   }
 
   JobStep decide();
@@ -139,7 +151,6 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   task.slack = 0.5 * settings.design.tolerance;
   auto dig = best_dig(task);
   if (!dig) return std::nullopt;
-
   const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
   const ShapeChange& change = dig->change;
   const bool shapes = change.shaped > worth_a_dig;
@@ -151,8 +162,6 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   step.dump = dump->place;
   if (dump->in_truck) step.truck = record.trucks;
   step.predicted = record.learning.foretell(dig->dig);
-  const auto down = way_down(machine, step.path, boom_plane_profile(dig->surface));
-  if (const auto* poses = std::get_if<std::vector<DigPose>>(&down)) step.path.approach = *poses;
   const StepMotion motion = checked_motion(settings, now, step);
   step.warnings = motion.warnings;
   step.trustworthy = motion.is_trustworthy;
@@ -209,17 +218,12 @@ JobStep SiteJob::State::decide() {
     record.fruitless_digs = 0;
     return move_step();
   }
-  const JobProgress now = measured(map, ground.expected(), settings.design.tolerance);
-  return step_of(JobAction::stop, now.is_finished ? "finished" : "what is left cannot be dug");
+  const bool is_finished = progress_on(ground.expected()).is_finished;
+  return step_of(JobAction::stop, is_finished ? "finished" : "what is left cannot be dug");
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
-  SiteEvent event;
-  event.scan = *report.scan;
-  event.dug = false;
-  event.time = report.time;
-  event.base = record.base;
-  const auto off = ground.take_in(event);
+  const auto off = ground.take_in(event_of(*report.scan, report.time, record.base));
   // Of the edge in one dig, and of what a scan's registration leaves (ours).
   constexpr double reading_sd = 0.012;
   if (off) {
@@ -242,14 +246,14 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   const double least = std::max(least_taken * step.predicted.payload_mass, least_mass);
   int& fruitless = finishing ? record.fruitless : record.fruitless_digs;
   fruitless = report.stalled || lifted < least ? fruitless + 1 : 0;
-  progress.payload_mass += report.payload_mass.value_or(step.predicted.payload_mass);
+  progress.payload_mass += lifted;
   if (report.stalled) {
     ++progress.stalls;
     record.deepest_cut = std::max(shallowest_cut, after_stall * record.deepest_cut);
     record.wants_scan = true;
   }
   if (step.truck) {
-    record.truck_load += report.payload_mass.value_or(step.predicted.payload_mass);
+    record.truck_load += lifted;
     if (record.truck_load >= settings.design.truck->target_mass) {
       record.truck_load = 0.0;
       ++record.trucks;
@@ -300,12 +304,7 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
                                      ": holds a job already: go on with it, or begin it in "
                                      "another folder");
   auto state = std::make_unique<State>(folder, std::move(settings));
-  SiteEvent event;
-  event.scan = first;
-  event.dug = false;
-  event.time = time;
-  event.base = *state->settings.design.start;
-  (void)state->ground.take_in(event);
+  (void)state->ground.take_in(event_of(first, time, *state->settings.design.start));
   state->first = state->ground.expected();
   save_ground(state->first_file(), state->ground.site().ground());
   state->look_at_design();
@@ -313,8 +312,7 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
   record.base = base_at(state->frame, {0.0, 0.0, {}}, state->first, state->settings.site.machine);
   record.site_updates = state->ground.site().updates();
   state->ground.save(record.site_updates);
-  record.first_volume =
-      measured(state->map, state->first, state->settings.design.tolerance).left_volume;
+  record.progress.design_volume = state->progress_on(state->first).left_volume;
   state->save();
   return SiteJob(std::move(state));
 }
@@ -368,19 +366,7 @@ void SiteJob::undo() {
 
 const std::vector<Warning>& SiteJob::scan_warnings() const { return state_->ground.warnings(); }
 
-JobProgress SiteJob::progress() const {
-  const JobRecord& record = state_->record;
-  JobProgress progress =
-      measured(state_->map, state_->ground.expected(), state_->settings.design.tolerance);
-  progress.design_volume = record.first_volume;
-  progress.digs = record.progress.digs;
-  progress.finishing_passes = record.progress.finishing_passes;
-  progress.moves = record.progress.moves;
-  progress.scans = record.progress.scans;
-  progress.stalls = record.progress.stalls;
-  progress.payload_mass = record.progress.payload_mass;
-  return progress;
-}
+JobProgress SiteJob::progress() const { return state_->progress_on(state_->ground.expected()); }
 
 const Terrain& SiteJob::ground() const { return state_->ground.expected(); }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -57,6 +58,20 @@ struct Candidate {
   double worth = 0.0;  ///< by the soil that it lifts
 };
 
+/// A lane, and what all digs in it ask of its view.
+struct Lane {
+  Lane(LaneView seen, double allowance)
+      : view(std::move(seen)),
+        floor(view.floor(allowance)),
+        ground(view.profile()),
+        excess(view.excess(allowance)) {}
+
+  LaneView view;
+  GroundProfile floor;
+  GroundProfile ground;
+  Eigen::ArrayXd excess;  ///< of each column [m]
+};
+
 class StepSearch {
  public:
   explicit StepSearch(const StepTask& task)
@@ -68,24 +83,30 @@ class StepSearch {
               task.density_percent),
         capacity_(heaped_capacity(machine_)) {
     for (const double lane : task.lanes) {
-      views_.emplace_back(task.ground, task.map, dig_line(task.base, 0.0, lane), extent(),
-                          machine_.bucket.width_outside);
+      lanes_.emplace_back(LaneView(task.ground, task.map, dig_line(task.base, 0.0, lane), extent(),
+                                   machine_.bucket.width_outside),
+                          task.allowance);
     }
   }
 
   std::optional<StepDig> run() {
-    for (std::size_t lane = 0; lane < views_.size(); ++lane) lay_out(lane);
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) lay_out(lane);
     for (Candidate& candidate : candidates_) weigh(candidate);
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
     std::optional<StepDig> best;
+    std::size_t lane = 0;  // of the best
     std::size_t confirmed = 0;
     for (const Candidate& candidate : candidates_) {
       if (confirmed == most_confirmed || !(candidate.worth > 0.0)) break;
       auto dig = confirm(candidate);
-      if (dig) ++confirmed;
-      if (dig && (!best || dig->worth > best->worth)) best = std::move(dig);
+      if (!dig) continue;
+      ++confirmed;
+      if (best && !(dig->worth > best->worth)) continue;
+      best = std::move(dig);
+      lane = candidate.lane;
     }
+    if (best) add_approach(lane, best->path);
     return best;
   }
 
@@ -98,15 +119,21 @@ class StepSearch {
             on_line(task_.far + room_beyond), half};
   }
 
+  void add_approach(std::size_t lane, DigPath& path) const {
+    auto down = way_down(machine_, path, boom_plane_profile(lanes_[lane].view.surface()));
+    if (auto* poses = std::get_if<std::vector<DigPose>>(&down)) path.approach = std::move(*poses);
+  }
+
   void lay_out(std::size_t lane) {
-    const LaneView& view = views_[lane];
+    const LaneView& view = lanes_[lane].view;
     DigPathOptions rules;
-    rules.floor = view.floor(task_.allowance);
+    rules.floor = lanes_[lane].floor;
     rules.penetration_clearance = heel_clearance;
-    const GroundProfile ground = view.profile();
+    const GroundProfile& ground = lanes_[lane].ground;
     const double last = task_.finishing ? least_pass * (task_.far - task_.near) : start_step;
     for (double start = task_.far; start > task_.near + last; start -= start_step) {
-      if (std::isnan(ground(start) - rules.floor(start)) || !is_worth_a_dig(view, start)) continue;
+      if (std::isnan(ground(start) - rules.floor(start)) || !is_worth_a_dig(lanes_[lane], start))
+        continue;
       if (task_.finishing) {
         rules.drag_keeps_angle = true;
         for (const double angle : finish_angles) {
@@ -154,7 +181,7 @@ class StepSearch {
     if (!(longest > shortest_drag)) return;
     for (const double fill : fills) {
       const double drag =
-          std::min(drag_that_fills(views_[lane], {from, layer.height}, fill), longest);
+          std::min(drag_that_fills(lanes_[lane], {from, layer.height}, fill), longest);
       if (drag == last) break;
       add(lane, {layer.angle, layer.depth / std::sin(layer.angle), drag}, start, rules);
       last = drag;
@@ -183,10 +210,11 @@ class StepSearch {
     return known > 0 ? sum / known : std::nan("");
   }
 
-  bool is_worth_a_dig(const LaneView& view, double start) const {
+  bool is_worth_a_dig(const Lane& lane, double start) const {
+    const LaneView& view = lane.view;
     const double first = view.x(0);
     const auto col = static_cast<Index>((start - start_step - first) / view.surface().cell_size);
-    return col > 0 && col < view.columns() && view.excess(col, task_.allowance) > least_excess;
+    return col > 0 && col < view.columns() && lane.excess(col) > least_excess;
   }
 
   struct DragStart {
@@ -195,7 +223,8 @@ class StepSearch {
   };
 
   /// The length of a drag at this height that meets so much soil.
-  double drag_that_fills(const LaneView& view, const DragStart& start, double fill) const {
+  double drag_that_fills(const Lane& lane, const DragStart& start, double fill) const {
+    const LaneView& view = lane.view;
     const auto [from, height] = start;
     const double cell = view.surface().cell_size;
     const double bulking =
@@ -207,7 +236,7 @@ class StepSearch {
       const auto col = static_cast<Index>((x - view.x(0)) / cell);
       if (col < 0 || col >= view.columns()) break;
       const double above = view.ground_at(col) - height;
-      if (above > 0.0) met += cell * std::min(above, view.excess(col, task_.allowance));
+      if (above > 0.0) met += cell * std::min(above, lane.excess(col));
       x -= cell;
     }
     return std::max(shortest_drag, from - x);
@@ -215,7 +244,7 @@ class StepSearch {
 
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
-    auto path = make_dig_path(machine_, parameters, start, views_[lane].profile(), rules);
+    auto path = make_dig_path(machine_, parameters, start, lanes_[lane].ground, rules);
     if (auto* made = std::get_if<DigPath>(&path)) candidates_.push_back({lane, std::move(*made)});
   }
 
@@ -231,7 +260,7 @@ class StepSearch {
   }
 
   void weigh(Candidate& candidate) {
-    const Terrain& ground = views_[candidate.lane].ground().terrain();
+    const Terrain& ground = lanes_[candidate.lane].view.ground().terrain();
     const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle());
     if (!std::holds_alternative<PlannedDig>(dig)) return;
     candidate.dig = std::get<PlannedDig>(dig);
@@ -239,7 +268,7 @@ class StepSearch {
   }
 
   std::optional<StepDig> confirm(const Candidate& candidate) const {
-    const LaneView& view = views_[candidate.lane];
+    const LaneView& view = lanes_[candidate.lane].view;
     const Terrain& ground = view.ground().terrain();
     const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle());
     const auto* hard = std::get_if<PlannedDig>(&in_hard);
@@ -250,9 +279,7 @@ class StepSearch {
     step.lane = task_.lanes[candidate.lane];
     step.path = candidate.path;
     step.dig = found->dig;
-    step.result = std::move(found->result);
-    step.surface = view.surface();
-    step.change = view.change(step.result.patch, task_.slack);
+    step.change = view.change(found->result.patch, task_.slack);
     double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
     if (!(shaped > 0.0)) shaped = lifted_worth * step.dig.payload_volume;
     const double deep_price = task_.finishing ? 1.0 : too_deep_price;
@@ -272,7 +299,7 @@ class StepSearch {
   HeightMapSimulator simulator_;
   HeightMapSimulator hard_;
   double capacity_;
-  std::vector<LaneView> views_;
+  std::vector<Lane> lanes_;
   std::vector<Candidate> candidates_;
 };
 

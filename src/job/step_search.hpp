@@ -38,10 +38,8 @@ struct StepTask {
 /// A dig, with what it does to the shape of the ground.
 struct StepDig {
   double lane = 0.0;  ///< [m]
-  DigPath path;       ///< in the frame of the lane
+  DigPath path;       ///< in the frame of the lane, with its approach
   PlannedDig dig;     ///< with its cycle
-  DigResult result;   ///< of the ground of its lane
-  HeightMap surface;  ///< of its lane before it [m]
   ShapeChange change;
   double strength_share = 0.0;  ///< of ln of the energy in ln of the soil's strength [-]
   double worth = 0.0;           ///< volume of the design per cost of the cycle [m^3/J]
