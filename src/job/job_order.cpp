@@ -14,6 +14,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/little_endian.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -26,43 +27,6 @@ constexpr const char* format = "plain-site";
 constexpr const char* law_name = "order-law.json";
 constexpr const char* tin_name = "order-design.ply";
 constexpr const char* raster_name = "order-design.tif";
-
-/// Numbers of a soil by their keys.
-template <typename Soil, typename Visit>
-void for_each_number(Soil& soil, Visit visit) {
-  visit("specific_gravity", soil.specific_gravity);
-  visit("water_content", soil.water_content);
-  visit("void_ratio_max", soil.void_ratio_max);
-  visit("void_ratio_min", soil.void_ratio_min);
-  visit("void_ratio_loose", soil.void_ratio_loose);
-  visit("cohesion_loosest_pa", soil.cohesion_loosest);
-  visit("cohesion_growth", soil.cohesion_growth);
-  visit("friction_loosest_rad", soil.friction_loosest);
-  visit("friction_gain_rad", soil.friction_gain);
-  visit("tool_friction_ratio", soil.tool_friction_ratio);
-  visit("adhesion_ratio", soil.adhesion_ratio);
-  visit("angle_of_repose_rad", soil.angle_of_repose);
-  visit("cone_index_reference_pa", soil.cone_index_reference);
-  visit("cone_index_rate", soil.cone_index_rate);
-  visit("cone_index_reference_density_kg_per_m3", soil.cone_index_reference_density);
-  visit("cone_index_stress_exponent", soil.cone_index_stress_exponent);
-}
-
-Json soil_json(const SoilKind& soil) {
-  Json json = {{"name", soil.name}, {"stress_law", soil.cone_index_law == ConeIndexLaw::stress}};
-  for_each_number(soil, [&](const char* key, double value) { json[key] = value; });
-  return json;
-}
-
-SoilKind read_soil(JsonObject object) {
-  SoilKind soil;
-  soil.name = object.text("name");
-  soil.cone_index_law =
-      object.flag("stress_law") ? ConeIndexLaw::stress : ConeIndexLaw::bulk_density;
-  for_each_number(soil, [&](const char* key, double& value) { value = object.number(key); });
-  object.done();
-  return soil;
-}
 
 Json corners(const SitePolygon& polygon) {
   Json list = Json::array();

@@ -141,18 +141,34 @@ SoilState state_of_density(const SoilKind& soil, double density_percent) {
 
 }  // namespace
 
+SoilKind read_soil(JsonObject object) {
+  SoilKind soil;
+  soil.name = object.text("name");
+  for (const SoilNumber& number : soil_numbers) {
+    soil.*number.value = object.number(number.key, number.lowest, number.highest);
+  }
+  read_cone_index(object.object("cone_index"), soil);
+  object.done();
+  check_consistency(soil,
+                    [&](const char* key, const std::string& text) { object.fail(key, text); });
+  return soil;
+}
+
+nlohmann::ordered_json soil_json(const SoilKind& soil) {
+  const bool by_stress = soil.cone_index_law == ConeIndexLaw::stress;
+  nlohmann::ordered_json json = {{"name", soil.name}};
+  for (const SoilNumber& number : soil_numbers) json[number.key] = soil.*number.value;
+  nlohmann::ordered_json& law = json["cone_index"];
+  law["law"] = by_stress ? "stress" : "bulk_density";
+  for_each_number(soil.cone_index_law,
+                  [&](const SoilNumber& number) { law[number.key] = soil.*number.value; });
+  return json;
+}
+
 SoilKind load_soil(const std::string& path) {
   JsonObject file = JsonObject::open(path, "excavplan-soil");
   file.ignore("sources");
-  SoilKind soil;
-  soil.name = file.text("name");
-  for (const SoilNumber& number : soil_numbers) {
-    soil.*number.value = file.number(number.key, number.lowest, number.highest);
-  }
-  read_cone_index(file.object("cone_index"), soil);
-  file.done();
-  check_consistency(soil, [&](const char* key, const std::string& text) { file.fail(key, text); });
-  return soil;
+  return read_soil(std::move(file));
 }
 
 void require_soil(const SoilKind& soil) {

@@ -2,11 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <excavplan/soil/soil.hpp>
 
-/// @file What loops over cells and drawn soils need of a soil. Private to the project.
+/// @file
+/// What loops over cells, drawn soils and files of other kinds need of a soil. Private to the
+/// project.
 
 namespace excavplan {
+
+class JsonObject;
+
+/// A soil within a file of another kind, by the keys and rules of a soil file: the numbers of its
+/// own law of the cone index alone.
+nlohmann::ordered_json soil_json(const SoilKind& soil);
+/// @throws Error (bad_file) as load_soil()
+SoilKind read_soil(JsonObject object);
 
 /// Of any soil, also a loose one; ours.
 constexpr double most_void_ratio = 20.0;

@@ -8,8 +8,8 @@
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/trial/true_site.hpp>
 
+#include "support/plain_site_folder.hpp"
 #include "support/run_program.hpp"
-#include "trial/plain_site_folder.hpp"
 
 namespace excavplan::test {
 

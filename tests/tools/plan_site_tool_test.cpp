@@ -8,6 +8,7 @@
 
 #include <excavplan/machine/trajectory.hpp>
 
+#include "support/plain_site_folder.hpp"
 #include "support/tool_answers.hpp"
 
 namespace excavplan::test {
@@ -111,28 +112,12 @@ TEST_F(PlanSite, AScanWithoutAStepAndAJobThatEnds) {
 }
 
 TEST_F(PlanSite, APlainSiteSaysAll) {
-  json site = {{"format", "plain-site"},
-               {"version", 1},
-               {"design",
-                {{"kind", "trench"},
-                 {"length_m", 2.5},
-                 {"floor_width_m", 1.0},
-                 {"depth_m", 0.4},
-                 {"origin_m", {2.0, 0.0}},
-                 {"heading_rad", 0.0}}},
-               {"tolerance_m", 0.02},
-               {"start_pose", {{"x", -0.6}, {"y", 0.0}, {"heading_rad", 0.0}}},
-               {"soil", {{"name", "loam"}, {"e_max", 1.4}}},
-               {"sensor",
-                {{"name", "lidar"},
-                 {"mount", "cab"},
-                 {"noise_sd_at_1m_m", 0.0},
-                 {"height_m", 3.0},
-                 {"tilt_deg", 25},
-                 {"field_of_view_deg", {360, 45}}}},
-               {"dump_areas",
-                {{{"kind", "windrow"}, {"polygon", {{-1, 1.5}, {7, 1.5}, {7, 5.5}, {-1, 5.5}}}}}},
-               {"files", {{"first_scan", "scan0.asc"}}}};
+  json site = PlainSiteFolder().site;
+  site["design"]["length_m"] = 2.5;
+  site["design"].erase("floor_z_at_middle_m");  // its depth counts from the scan
+  site["tolerance_m"] = 0.02;
+  site["start_pose"]["x"] = -0.6;
+  site["soil"]["e_max"] = 1.4;
   const std::string file = folder.write("site.json", site.dump());
   const json begun = answer("plan-site", {"new", job(), "--site", file});
   EXPECT_NEAR(number(begun, "/progress/design_m3"), 1.0, 0.06);

@@ -8,8 +8,8 @@
 
 #include <excavplan/ground/ascii_grid.hpp>
 
+#include "support/plain_site_folder.hpp"
 #include "support/tool_answers.hpp"
-#include "trial/plain_site_folder.hpp"
 
 namespace excavplan::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <excavplan/trial/job_score.hpp>
 
 #include "support/errors.hpp"
-#include "trial/plain_site_folder.hpp"
+#include "support/plain_site_folder.hpp"
 
 namespace excavplan::test {
 namespace {

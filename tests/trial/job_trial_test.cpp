@@ -6,7 +6,7 @@
 #include <excavplan/trial/plain_planners.hpp>
 
 #include "support/errors.hpp"
-#include "trial/plain_site_folder.hpp"
+#include "support/plain_site_folder.hpp"
 
 namespace excavplan::test {
 namespace {

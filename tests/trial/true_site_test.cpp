@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "support/errors.hpp"
-#include "trial/plain_site_folder.hpp"
+#include "support/plain_site_folder.hpp"
 #include "trial/tracked_path.hpp"
 
 namespace excavplan::test {
