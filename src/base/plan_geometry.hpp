@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,8 +17,8 @@ namespace excavplan {
 /// Along a line and to the left of it.
 class PlanFrame {
  public:
-  PlanFrame(const Eigen::Vector2d& origin, double heading)
-      : origin_(origin), ahead_(std::cos(heading), std::sin(heading)) {}
+  PlanFrame(Eigen::Vector2d origin, double heading)
+      : origin_(std::move(origin)), ahead_(std::cos(heading), std::sin(heading)) {}
 
   Eigen::Vector2d place(double along, double left) const {
     return origin_ + along * ahead_ + left * to_left();
