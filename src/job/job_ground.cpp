@@ -56,16 +56,47 @@ void hold_steep(const SoilKind& soil, Terrain& ground) {
   });
 }
 
-/// Where a scan did not see what was dug, it is as foretold.
+/// The part of a ground on an earlier grid of the same site, which only grows.
+GroundState part_on(const HeightMap& grid, GroundState ground) {
+  HeightMap& bank = ground.terrain.bank;
+  if (same_grid(bank, grid)) return ground;
+  const Eigen::Vector2d shift = (grid.origin - bank.origin) / bank.cell_size;
+  const Eigen::Index row = std::lround(shift.y());
+  const Eigen::Index col = std::lround(shift.x());
+  const auto cut_out = [&](Eigen::ArrayXXd& layer) {
+    if (layer.size() > 0) layer = layer.block(row, col, grid.z.rows(), grid.z.cols()).eval();
+  };
+  Terrain& terrain = ground.terrain;
+  for (Eigen::ArrayXXd* layer :
+       {&bank.z, &terrain.loose, &terrain.bank_void_ratio, &terrain.loose_void_ratio,
+        &terrain.obstacles, &ground.seen, &ground.deviation}) {
+    cut_out(*layer);
+  }
+  bank.origin = grid.origin;
+  return ground;
+}
+
+/// Where a scan did not see what was dug, it is as foretold, and not seen since.
 void keep_unseen(const Terrain& expected, const Eigen::ArrayXXd& seen, double time,
-                 Terrain& scanned) {
-  if (!same_grid(expected.bank, scanned.bank)) return;
+                 GroundState& scanned) {
+  Terrain& terrain = scanned.terrain;
   for_each_cell(seen, [&](Cell at) {
-    if (seen(at.row, at.col) >= time) return;
-    scanned.bank.z(at.row, at.col) = expected.bank.z(at.row, at.col);
-    scanned.loose(at.row, at.col) = expected.loose(at.row, at.col);
-    if (scanned.loose_void_ratio.size() == 0 || expected.loose_void_ratio.size() == 0) return;
-    scanned.loose_void_ratio(at.row, at.col) = expected.loose_void_ratio(at.row, at.col);
+    if (scanned.seen(at.row, at.col) >= time) return;
+    scanned.seen(at.row, at.col) = seen(at.row, at.col);
+    terrain.bank.z(at.row, at.col) = expected.bank.z(at.row, at.col);
+    terrain.loose(at.row, at.col) = expected.loose(at.row, at.col);
+    if (terrain.loose_void_ratio.size() == 0 || expected.loose_void_ratio.size() == 0) return;
+    terrain.loose_void_ratio(at.row, at.col) = expected.loose_void_ratio(at.row, at.col);
+  });
+}
+
+/// What a dig changes is not seen.
+void forget_changed(const Terrain& before, const TerrainPatch& patch, Eigen::ArrayXXd& seen) {
+  for_each_cell(patch.bank, [&](Cell at) {
+    const Cell cell = {at.row + patch.row, at.col + patch.col};
+    const double change = patch.bank(at.row, at.col) + patch.loose(at.row, at.col) -
+                          before.bank.z(cell.row, cell.col) - before.loose(cell.row, cell.col);
+    if (std::abs(change) > least_cut) seen(cell.row, cell.col) = std::nan("");
   });
 }
 
@@ -82,6 +113,7 @@ void JobGround::expect(const JobStep& dig, double height_bias) {
   line.z += height_bias;
   const SoilVoids voids = soil_voids(soil, settings_.density_percent);
   const DigResult result = dig_along(simulator, machine, expected_, {line, voids, dig.path});
+  forget_changed(expected_, result.patch, seen_);
   apply(result.patch, expected_);
   if (!dig.truck) {
     heap_soil(expected_, soil, settings_.density_percent, dig.dump.head<2>(),
@@ -92,16 +124,22 @@ void JobGround::expect(const JobStep& dig, double height_bias) {
 
 std::optional<double> JobGround::take_in(const SiteEvent& event) {
   const Terrain expected = std::move(expected_);
-  const Terrain before = std::move(scanned_);
+  const GroundState before = std::move(scanned_);
+  const bool is_first = before.seen.size() == 0;
   const SiteUpdate update = site_.update(event);
   warnings_ = update.warnings;
-  scanned_ = site_.ground().terrain;
-  scanned_.doubts.clear();
-  keep_unseen(expected, site_.ground().seen, event.time, scanned_);
-  hold_steep(settings_.site.soil, scanned_);
-  expected_ = scanned_;
+  scanned_ = is_first ? site_.ground() : part_on(before.terrain.bank, site_.ground());
+  scanned_.terrain.doubts.clear();
+  if (!is_first) keep_unseen(expected, seen_, event.time, scanned_);
+  hold_steep(settings_.site.soil, scanned_.terrain);
+  begin_at_scan();
+  return update.taken ? cut_above(expected, before.terrain, scanned_.terrain) : std::nullopt;
+}
+
+void JobGround::begin_at_scan() {
+  expected_ = scanned_.terrain;
+  seen_ = scanned_.seen;
   unseen_.clear();
-  return update.taken ? cut_above(expected, before, scanned_) : std::nullopt;
 }
 
 std::string JobGround::file_of(long long number) const {
@@ -109,18 +147,15 @@ std::string JobGround::file_of(long long number) const {
 }
 
 void JobGround::save(long long number) const {
-  GroundState state = site_.ground();
-  state.terrain = scanned_;
-  save_ground(file_of(number), state);
+  save_ground(file_of(number), scanned_);
   std::error_code none;
   std::filesystem::remove(file_of(number - 2), none);
 }
 
 void JobGround::load(long long number) {
   if (site_.updates() > number) site_.undo();
-  scanned_ = load_ground(file_of(number)).terrain;
-  expected_ = scanned_;
-  unseen_.clear();
+  scanned_ = load_ground(file_of(number));
+  begin_at_scan();
 }
 
 }  // namespace excavplan

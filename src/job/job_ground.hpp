@@ -25,6 +25,8 @@ class JobGround {
 
   const Site& site() const { return site_; }
   const Terrain& expected() const { return expected_; }
+  /// When each cell was last seen as it is now, since 1970-01-01 UTC [s]; NaN: never, or dug since.
+  const Eigen::ArrayXXd& seen() const { return seen_; }
   /// Digs since the last scan, in their order.
   const std::vector<JobStep>& unseen() const { return unseen_; }
 
@@ -45,12 +47,14 @@ class JobGround {
 
  private:
   std::string file_of(long long number) const;
+  void begin_at_scan();
 
   std::string folder_;
   const JobSettings& settings_;
   Site site_;
-  Terrain scanned_;   ///< at the last scan
-  Terrain expected_;  ///< with what was dug since
+  GroundState scanned_;  ///< at the last scan, on the grid of the first
+  Terrain expected_;     ///< with what was dug since
+  Eigen::ArrayXXd seen_;
   std::vector<JobStep> unseen_;
   std::vector<Warning> warnings_;
 };

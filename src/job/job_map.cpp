@@ -21,10 +21,10 @@ using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double unclear_margin = 0.05;  // beside walls, whose points fall on the floor; ours [m]
-constexpr double flattest_face = 0.15;   // of a batter; ours [rad]
-constexpr double least_faces = 0.1;      // share of the design; ours
-constexpr double least_share = 0.5;      // of a cell that is one of the design
+constexpr double unclear_margin = 0.0;  // beside walls, whose points fall on the floor; ours [m]
+constexpr double flattest_face = 0.15;  // of a batter; ours [rad]
+constexpr double least_faces = 0.1;     // share of the design; ours
+constexpr double least_share = 0.5;     // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
 /// The cells of a polygon.

@@ -251,6 +251,11 @@ Json record_json(const JobRecord& record) {
   json["learning"] = learning_json(record.learning);
   if (record.present) json["present"] = step_json(*record.present);
   if (record.planned) json["planned"] = planned_json(*record.planned);
+  json["barren"] = Json::array();
+  for (const DigStart& each : record.barren) {
+    json["barren"].push_back(each.lane);
+    json["barren"].push_back(each.along);
+  }
   json["unseen"] = Json::array();
   for (const JobStep& dig : record.unseen) {
     json["unseen"].push_back(step_json(dig));
@@ -275,6 +280,9 @@ JobRecord read_record(const std::string& path) {
   record.learning = read_learning(object.numbers("learning", 10));
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));
+  const std::vector<double> barren = object.numbers("barren");
+  for (std::size_t i = 0; i + 1 < barren.size(); i += 2)
+    record.barren.push_back({barren[i], barren[i + 1]});
   for (JsonObject& each : object.objects("unseen")) {
     record.unseen.push_back(read_step(std::move(each)));
   }

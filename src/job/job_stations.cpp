@@ -4,22 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "base/angles.hpp"
 
 namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr double nearest_work = 1.45;  // before the tracks, so that the bucket has room to curl [m]
-constexpr double farthest_work = 0.77;  // of the reach of the front from its pin
-constexpr double end_wall =
-    1.6;                         // from the nearest work to the far end: steep cuts need weight [m]
-constexpr double overlap = 0.4;  // of what is dug from two places in succession [m]
-constexpr double side_margin = 0.03;  // to the sides of the design, as no machine is exact [m]
-constexpr double end_margin = 0.06;   // to the ends of the design, likewise [m]
-constexpr double lane_overlap = 0.1;  // of two lanes [m]
-constexpr double batter_step = 0.3;   // of lanes that cut a face in steps [m]
+constexpr double nearest_work = 1.15;  // before the tracks, so that the bucket has room to curl [m]
+constexpr double farthest_work = 0.78;  // of the reach of the front from its pin
+constexpr double end_wall = 0.67;       // of that reach to the far end: nearer the bucket opens too
+                                        // little for a steep cut
+constexpr double overlap = 0.25;        // of what is dug from two places in succession [m]
+constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
+constexpr double end_margin = 0.04;     // to the ends of the design, likewise [m]
+constexpr double lane_overlap = 0.1;    // of two lanes [m]
+constexpr double batter_step = 0.3;     // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
+
+constexpr double beside_edge =
+    1.0;  // of tracks that stand beside the design: beyond what spills [m]
+constexpr double beyond_near_end = 2.5;  // of the swing axis of a machine that looks at it [m]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
@@ -44,20 +51,25 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
 }
 
 double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
-double farthest_of(const Machine& machine) {
-  return machine.boom_pin.x() + farthest_work * machine.full_length();
+double at_reach(const Machine& machine, double share) {
+  return machine.boom_pin.x() + share * machine.full_length();
 }
+double farthest_of(const Machine& machine) { return at_reach(machine, farthest_work); }
 
 }  // namespace
 
 WorkRange work_range(const JobFrame& frame, const Machine& machine, double along) {
-  return {std::max(nearest_of(machine), frame.near + end_margin - along),
-          std::min(farthest_of(machine), frame.far - end_margin - along)};
+  const double end = frame.far - end_margin - along;
+  WorkRange range;
+  range.near = std::max(nearest_of(machine), frame.near + end_margin - along);
+  range.far = std::min(farthest_of(machine), end);
+  range.ends_at_wall = range.far == end && !frame.is_battered;
+  return range;
 }
 
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
   const Machine& machine = settings.site.machine;
-  const double first = frame.far - nearest_of(machine) - end_wall;
+  const double first = frame.far - at_reach(machine, end_wall);
   const double last = std::min(first, frame.near - nearest_of(machine));
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
@@ -74,10 +86,35 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   return stations;
 }
 
+std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& settings,
+                                     const JobMap& map) {
+  const Machine& machine = settings.site.machine;
+  const double half = 0.5 * machine.undercarriage_width();
+  const auto is_free = [&](const JobStation& station) {
+    for (double x = -machine.track_front; x <= machine.track_front; x += map.target.cell_size) {
+      for (double y = -half; y <= half; y += map.target.cell_size) {
+        const Eigen::Vector2d at = frame.place(station.along + x, station.beside + y);
+        const auto cell = cell_at(map.target, at.x(), at.y());
+        if (!cell || !std::isnan(map.target.z(cell->row, cell->col))) return false;
+        if (map.dump(cell->row, cell->col)) return false;
+        if (map.forbidden(cell->row, cell->col) > -std::numeric_limits<double>::infinity())
+          return false;
+      }
+    }
+    return true;
+  };
+  // To the left first: the cab, with what scans, is then nearer to the edge.
+  for (const double side : {frame.left + beside_edge + half, frame.right - beside_edge - half}) {
+    const JobStation station = {frame.near + beyond_near_end, side, {}, pi};
+    if (is_free(station)) return station;
+  }
+  return std::nullopt;
+}
+
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,
                  const Machine& machine) {
   const Eigen::Vector2d place = frame.place(station.along, station.beside);
-  BasePose base = {place.x(), place.y(), 0.0, frame.heading};
+  BasePose base = {place.x(), place.y(), 0.0, frame.heading + station.turned};
   const double half = 0.5 * machine.undercarriage_width();
   double sum = 0.0;
   int known = 0;

@@ -17,9 +17,12 @@ namespace excavplan {
 
 /// A place of the machine: along its line of work, and beside it.
 struct JobStation {
-  double along = 0.0;         ///< [m]
-  double beside = 0.0;        ///< [m]
-  std::vector<double> lanes;  ///< that it digs from there, beside the line of work [m]
+  double along = 0.0;              ///< [m]
+  double beside = 0.0;             ///< [m]
+  std::vector<double> lanes = {};  ///< that it digs from there, beside the line of work [m]
+  double turned = 0.0;             ///< from the line of work [rad]
+
+  bool is_lookout() const { return lanes.empty(); }  ///< it only scans from there
 };
 
 /// The places of a job in their order, from the far end of the design to beyond its near end. From
@@ -27,10 +30,16 @@ struct JobStation {
 /// place, the machine moves aside before it goes back.
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
 
+/// A place beside the near end, to see the floor that its edge hides from all other places; nothing
+/// if the machine cannot stand on either side.
+std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& settings,
+                                     const JobMap& map);
+
 /// The part of the design that is worked on from so far along the line, from the swing axis [m].
 struct WorkRange {
   double near = 0.0;
   double far = 0.0;
+  bool ends_at_wall = false;  ///< `far` is the end of a design that is not battered
 };
 WorkRange work_range(const JobFrame& frame, const Machine& machine, double along);
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "base/plan_geometry.hpp"
 
@@ -16,8 +19,13 @@ using Eigen::Index;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Index top_part = 4;  // the highest quarter of the soil under the bucket meets it; ours
 constexpr double edge_slack =
     0.04;  // by which the bucket's edge may be beside the design; ours [m]
+
+double mean_of(const std::vector<double>& values, Index first) {
+  return std::accumulate(values.begin(), values.begin() + first, 0.0) / static_cast<double>(first);
+}
 
 /// Linear between the columns of a view; constant beyond.
 GroundProfile between_columns(const HeightMap& view, ArrayXd values) {
@@ -64,11 +72,11 @@ void LaneView::look_under_bucket(double bucket_width) {
   first_row_ = static_cast<Index>(std::round(row_of(-0.5 * bucket_width)));
   end_row_ = static_cast<Index>(std::round(row_of(0.5 * bucket_width)));
   const auto inner = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
-  floor_ = ground_at_ = ArrayXd::Zero(columns());
+  floor_ = ground_at_ = top_ = ArrayXd::Zero(columns());
+  std::vector<double> heights;
   for (Index col = 0; col < columns(); ++col) {
     double floor = -infinity;
-    double sum = 0.0;
-    Index known = 0;
+    heights.clear();
     for (Index row = first_row_; row < end_row_; ++row) {
       const double z = surface_.z(row, col);
       const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
@@ -77,11 +85,13 @@ void LaneView::look_under_bucket(double bucket_width) {
         floor = std::max(floor, std::isnan(target) ? z : target);
       if (forbidden_(row, col) > floor)
         floor = std::isinf(forbidden_(row, col)) ? nan : forbidden_(row, col);
-      if (std::isnan(z)) continue;
-      sum += z;
-      ++known;
+      if (!std::isnan(z)) heights.push_back(z);
     }
-    ground_at_(col) = 2 * known > end_row_ - first_row_ ? sum / static_cast<double>(known) : nan;
+    std::sort(heights.begin(), heights.end(), std::greater<>());
+    const auto known = static_cast<Index>(heights.size());
+    const bool is_known = 2 * known > end_row_ - first_row_;
+    ground_at_(col) = is_known ? mean_of(heights, known) : nan;
+    top_(col) = is_known ? mean_of(heights, std::max<Index>(1, known / top_part)) : nan;
     floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
   }
 }
@@ -91,7 +101,7 @@ GroundProfile LaneView::floor(double allowance) const {
   return between_columns(surface_, floor_.isNaN().select(ground_at_, floor_ + allowance));
 }
 
-GroundProfile LaneView::profile() const { return between_columns(surface_, ground_at_); }
+GroundProfile LaneView::profile() const { return between_columns(surface_, top_); }
 
 ArrayXd LaneView::excess(double allowance) const {
   ArrayXd excess = ArrayXd::Zero(columns());
@@ -108,7 +118,8 @@ ArrayXd LaneView::excess(double allowance) const {
   return excess;
 }
 
-ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
+ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules) const {
+  const double slack = rules.slack;
   const double area = surface_.cell_size * surface_.cell_size;
   ShapeChange change;
   for_each_cell(patch.bank, [&](Cell at) {
@@ -125,6 +136,7 @@ ShapeChange LaneView::change(const TerrainPatch& patch, double slack) const {
     }
     const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.gained += gained;
+    if (surface_.x(cell.col) > rules.end) change.at_end += gained;
     if (clear_(cell.row, cell.col)) {
       change.cleared += gained;
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -

@@ -13,13 +13,26 @@
 
 namespace excavplan {
 
+/// Where a dig begins: beside the swing axis and before it [m].
+struct DigStart {
+  double lane = 0.0;
+  double along = 0.0;
+};
+
 /// How the surface of a view changed.
 struct ShapeChange {
   double shaped = 0.0;    ///< less that is out of tolerance, of what counts [m^3]
   double cleared = 0.0;   ///< of what lies above the design where it can be told [m^3]
   double gained = 0.0;    ///< of what lies above the design [m^3]
+  double at_end = 0.0;    ///< of that, at the end of the work [m^3]
   double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
   double spilled = 0.0;   ///< risen beside the design and the dump areas [m^3]
+};
+
+/// What counts in a change.
+struct ShapeRules {
+  double slack = 0.0;  ///< so far from the design ground is not too deep or out of shape [m]
+  double end = 0.0;    ///< from here on the work ends, along the line [m]
 };
 
 /// What a machine sees along a line: heights are those of its path.
@@ -33,7 +46,7 @@ class LaneView {
 
   /// The highest of the design under the bucket; beside the design the ground. So much higher [m].
   GroundProfile floor(double allowance) const;
-  GroundProfile profile() const;  ///< of the ground, the mean under the bucket
+  GroundProfile profile() const;  ///< of the ground that the bucket meets first
 
   Eigen::Index columns() const { return surface_.z.cols(); }
   double x(Eigen::Index col) const { return surface_.x(col); }
@@ -41,8 +54,7 @@ class LaneView {
   /// Mean thickness of what is above the floor under the bucket, of each column [m].
   Eigen::ArrayXd excess(double allowance) const;
 
-  /// @param slack  so far from the design ground is not too deep or out of shape [m]
-  ShapeChange change(const TerrainPatch& patch, double slack) const;
+  ShapeChange change(const TerrainPatch& patch, const ShapeRules& rules) const;
 
  private:
   void look_under_bucket(double bucket_width);
@@ -54,7 +66,7 @@ class LaneView {
   Mask clear_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
-  Eigen::ArrayXd floor_, ground_at_;
+  Eigen::ArrayXd floor_, ground_at_, top_;
 };
 
 }  // namespace excavplan

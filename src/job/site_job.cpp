@@ -20,20 +20,20 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr std::size_t most_unseen = 5;   // digs between two scans
-constexpr double least_gain = 0.12;      // of a dig for volume, over the bucket's capacity
-constexpr double least_shaped = 0.012;   // payload of a finishing pass [m^3]
-constexpr double worth_a_dig = 0.015;    // of ground brought into shape by any dig [m^3]
-constexpr double bulk_allowance = 0.15;  // over the design, in tolerances
-constexpr int most_passes = 6;           // along the floor from one station
-constexpr int most_fruitless = 2;        // passes in succession that took nothing off
-constexpr int most_fruitless_digs = 3;   // likewise of digs for volume
-constexpr double least_mass = 15.0;      // in a bucket that was worth it [kg]
-constexpr double least_taken = 0.3;      // of what a pass is to take off, else it is fruitless
-constexpr double high_share = 0.8;       // of the tolerance: higher cells call for a pass
-constexpr double most_high = 0.02;       // share of cells that may stay so
-constexpr double least_seen = 0.99;      // of a finished design
-constexpr double after_stall = 0.7;      // of the depth of a cut
+constexpr std::size_t most_unseen = 5;  // digs between two scans
+constexpr double allowance = 0.3;       // over the design, in tolerances: what is too deep stays so
+constexpr int most_passes = 8;          // along the floor from one station
+constexpr int most_fruitless = 3;       // passes in succession that took nothing off
+constexpr int most_fruitless_digs = 3;  // likewise of digs for volume
+constexpr double least_mass = 15.0;     // in a bucket that was worth it [kg]
+constexpr double least_taken = 0.3;     // of what a pass is to take off, else it is fruitless
+constexpr double high_share = 0.8;      // of the tolerance: higher cells call for a pass
+constexpr double most_high = 0.03;      // share of cells that may stay so
+constexpr double heap_share = 1.6;      // likewise of cells of which hardly any may stay so
+constexpr double most_heaps = 0.006;    // share of these
+constexpr double least_seen = 0.99;     // of a finished design
+constexpr double after_stall = 0.7;     // of the depth of a cut
+constexpr double after_success = 1.1;   // likewise
 constexpr double shallowest_cut = 0.06;  // [m]
 
 /// A scan that tells the ground alone.
@@ -47,8 +47,9 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
 }
 
 /// Sets what is measured of the ground.
-JobProgress measured(JobProgress progress, const JobMap& map, const Terrain& ground,
+JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& now,
                      double tolerance) {
+  const Terrain& ground = now.expected();
   progress.left_volume = 0.0;
   const double area = map.target.cell_size * map.target.cell_size;
   std::vector<double> errors;
@@ -61,7 +62,7 @@ JobProgress measured(JobProgress progress, const JobMap& map, const Terrain& gro
     ++cells;
     const double error = ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col) - target;
     if (std::isnan(error)) return;
-    ++seen;
+    if (!std::isnan(now.seen()(at.row, at.col))) ++seen;
     progress.left_volume += area * std::max(0.0, error);
     if (!map.counts(at.row, at.col)) return;
     errors.push_back(std::abs(error));
@@ -92,15 +93,20 @@ struct SiteJob::State {
     map = map_of(settings, first.bank);
     frame = frame_of(settings, map);
     stations = stations_of(frame, settings);
+    const auto lookout = lookout_of(frame, settings, map);
+    if (!lookout) return;
+    const JobStation last = stations.back();
+    stations.insert(stations.end(), {*lookout, last, *lookout});
   }
 
-  JobProgress progress_on(const Terrain& terrain) const {
-    return measured(record.progress, map, terrain, settings.design.tolerance);
+  JobProgress progress() const {
+    return measured(record.progress, map, ground, settings.design.tolerance);
   }
 
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
   JobStep move_step();
+  JobStep leave();
   bool wants_passes() const;
   JobStep step_of(JobAction what, const std::string& reason = {});
   void end_step(const StepReport& report);
@@ -139,11 +145,13 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   straight.heading = frame.heading;
   const Eigen::Vector2d at = frame.of({straight.x, straight.y});
   const WorkRange range = work_range(frame, machine, at.x());
-  StepTask task{settings, map, now, straight, *dump, {}, range.near, range.far};
+  StepTask task{settings, map, now, straight, *dump, record.barren};
+  task.near = range.near;
+  task.far = range.far;
+  task.ends_at_wall = range.ends_at_wall;
   for (const double lane : stations[record.station].lanes) task.lanes.push_back(lane - at.y());
   task.finishing = finishing;
-  task.allowance = (finishing ? 0.0 : bulk_allowance * settings.design.tolerance) -
-                   record.learning.height_bias.mean;
+  task.allowance = allowance * settings.design.tolerance - record.learning.height_bias.mean;
   task.density_percent = settings.density_percent;
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
@@ -151,10 +159,6 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   task.slack = 0.5 * settings.design.tolerance;
   auto dig = best_dig(task);
   if (!dig) return std::nullopt;
-  const double least = finishing ? least_shaped : least_gain * heaped_capacity(machine);
-  const ShapeChange& change = dig->change;
-  const bool shapes = change.shaped > worth_a_dig;
-  if (!shapes && (finishing ? dig->dig.payload_volume : change.gained) < least) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = frame.heading - record.base.heading;
   step.lane = dig->lane;
@@ -177,32 +181,48 @@ JobStep SiteJob::State::move_step() {
   return step;
 }
 
-/// Whether too much of what is within reach lies above the design.
+/// Whether too much of what is within reach lies above the design: on the mean of a cell and its
+/// neighbours, since a single one is as much noise.
 bool SiteJob::State::wants_passes() const {
   const Eigen::Vector2d at = frame.of({record.base.x, record.base.y});
   const WorkRange range = work_range(frame, settings.site.machine, at.x());
   const std::vector<double>& lanes = stations[record.station].lanes;
   const double half = 0.5 * settings.site.machine.bucket.width_outside;
   const Terrain& now = ground.expected();
+  const auto above = [&](Cell cell) {
+    if (!map.clear(cell.row, cell.col)) return std::nan("");
+    return now.bank.z(cell.row, cell.col) + now.loose(cell.row, cell.col) -
+           map.target.z(cell.row, cell.col);
+  };
   int count = 0;
   int high = 0;
+  int heaps = 0;
   for_each_cell(map.clear, [&](Cell cell) {
-    if (!map.clear(cell.row, cell.col)) return;
+    if (std::isnan(above(cell))) return;
     const Eigen::Vector2d place = frame.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
     if (place.x() < range.near || place.x() > range.far) return;
     if (place.y() < lanes.front() - at.y() - half || place.y() > lanes.back() - at.y() + half)
       return;
-    const double surface = now.bank.z(cell.row, cell.col) + now.loose(cell.row, cell.col);
+    double sum = above(cell);
+    int known = 1;
+    for_each_neighbour(map.clear, cell, [&](Cell next) {
+      const double beside = above(next);
+      if (std::isnan(beside)) return;
+      sum += beside;
+      ++known;
+    });
     ++count;
-    if (surface - map.target.z(cell.row, cell.col) > high_share * settings.design.tolerance) ++high;
+    if (sum > high_share * settings.design.tolerance * known) ++high;
+    if (sum > heap_share * settings.design.tolerance * known) ++heaps;
   });
-  return high > most_high * count;
+  return high > most_high * count || heaps > most_heaps * count;
 }
 
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) return move_step();
   const bool is_fresh = ground.unseen().empty();
   if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
+  if (stations[record.station].is_lookout()) return leave();
   if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   if (record.fruitless_digs < most_fruitless_digs) {
     if (auto step = dig_step(false)) return *std::move(step);
@@ -211,15 +231,25 @@ JobStep SiteJob::State::decide() {
   if (record.passes_here < most_passes && record.fruitless < most_fruitless && wants_passes()) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
-  if (record.station + 1 < stations.size()) {
+  return leave();
+}
+
+/// To the next place from which there is something to do, or the end.
+JobStep SiteJob::State::leave() {
+  const JobProgress now = progress();
+  if (now.is_finished) return step_of(JobAction::stop, "finished");
+  while (record.station + 1 < stations.size()) {
     ++record.station;
+    const bool looks = stations[record.station].is_lookout();
+    if (looks && now.seen >= least_seen) continue;
     record.passes_here = 0;
     record.fruitless = 0;
     record.fruitless_digs = 0;
+    record.barren.clear();
+    record.wants_scan = looks;
     return move_step();
   }
-  const bool is_finished = progress_on(ground.expected()).is_finished;
-  return step_of(JobAction::stop, is_finished ? "finished" : "what is left cannot be dug");
+  return step_of(JobAction::stop, "what is left cannot be dug");
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
@@ -245,7 +275,9 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   const double lifted = report.payload_mass.value_or(step.predicted.payload_mass);
   const double least = std::max(least_taken * step.predicted.payload_mass, least_mass);
   int& fruitless = finishing ? record.fruitless : record.fruitless_digs;
-  fruitless = report.stalled || lifted < least ? fruitless + 1 : 0;
+  const bool is_fruitless = report.stalled || lifted < least;
+  fruitless = is_fruitless ? fruitless + 1 : 0;
+  if (is_fruitless && finishing) record.barren.push_back({step.lane, step.path.start_x});
   progress.payload_mass += lifted;
   if (report.stalled) {
     ++progress.stalls;
@@ -259,7 +291,10 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
       ++record.trucks;
     }
   }
-  if (!report.stalled) ground.expect(step, record.learning.height_bias.mean);
+  if (!report.stalled) {
+    record.deepest_cut = std::min(JobRecord{}.deepest_cut, after_success * record.deepest_cut);
+    ground.expect(step, record.learning.height_bias.mean);
+  }
 }
 
 void SiteJob::State::end_step(const StepReport& report) {
@@ -309,10 +344,10 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
   save_ground(state->first_file(), state->ground.site().ground());
   state->look_at_design();
   JobRecord& record = state->record;
-  record.base = base_at(state->frame, {0.0, 0.0, {}}, state->first, state->settings.site.machine);
+  record.base = base_at(state->frame, {}, state->first, state->settings.site.machine);
   record.site_updates = state->ground.site().updates();
   state->ground.save(record.site_updates);
-  record.progress.design_volume = state->progress_on(state->first).left_volume;
+  record.progress.design_volume = state->progress().left_volume;
   state->save();
   return SiteJob(std::move(state));
 }
@@ -366,7 +401,7 @@ void SiteJob::undo() {
 
 const std::vector<Warning>& SiteJob::scan_warnings() const { return state_->ground.warnings(); }
 
-JobProgress SiteJob::progress() const { return state_->progress_on(state_->ground.expected()); }
+JobProgress SiteJob::progress() const { return state_->progress(); }
 
 const Terrain& SiteJob::ground() const { return state_->ground.expected(); }
 

@@ -11,6 +11,7 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"
+#include "base/parallel.hpp"
 #include "planning/simulated_dig.hpp"
 
 namespace excavplan {
@@ -35,18 +36,27 @@ constexpr double risky = 0.4;          // what a dig is worth that may stall, ov
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
 constexpr double lifted_worth = 0.02;  // of any soil that a finishing pass lifts, likewise
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
-const std::array<double, 4> wall_angles = {0.8, 0.95, 1.05, 1.13};  // likewise
-const std::array<double, 2> wall_drags = {0.25, 0.6};               // [m]
-constexpr double shortest_drag = 0.2;                               // [m]
+constexpr double same_lane = 0.1;      // of a dig that lifted little [m]
+constexpr double same_start = 0.25;    // likewise [m]
+constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
+constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
+constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
+constexpr double worth_a_dig = 0.015;   // of ground brought into shape by any dig [m^3]
+constexpr double wall_from = 0.5;       // before the end, soil that later digs would leave [m]
+constexpr double wall_to = 0.12;        // likewise [m]
+constexpr double high_wall = 0.03;      // of that soil, to be cut before all else [m]
+constexpr double wall_worth = 1.0;      // of that soil, beyond that of other soil
+constexpr double shortest_drag = 0.2;   // [m]
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
 struct Attitude {
   double angle;
   bool is_kept;
 };
-const std::array<Attitude, 6> attitudes = {
-    {{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}, {0.95, false}, {1.1, false}}};
-const std::array<double, 3> finish_angles = {0.15, 0.3, 0.5};  // likewise
+const std::array<Attitude, 4> attitudes = {{{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}}};
+const std::array<Attitude, 5> wall_attitudes = {
+    {{1.3, false}, {1.2, false}, {1.1, false}, {1.0, false}, {0.8, false}}};
+const std::array<double, 3> finish_angles = {0.15, 0.3, 0.45};  // likewise
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
 
@@ -90,27 +100,55 @@ class StepSearch {
   }
 
   std::optional<StepDig> run() {
+    if (task_.ends_at_wall) {
+      if (auto dig = best_at_wall()) return dig;
+    }
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) lay_out(lane);
-    for (Candidate& candidate : candidates_) weigh(candidate);
-    std::sort(candidates_.begin(), candidates_.end(),
-              [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+    return best(task_.finishing ? Aim::shape : Aim::volume);
+  }
+
+ private:
+  /// What a dig is for: the wall at the end of the work, volume, or the shape of the floor.
+  enum class Aim { wall, volume, shape };
+
+  /// As steeply as the machine surely can.
+  std::optional<StepDig> best_at_wall() {
+    for (const Attitude& attitude : wall_attitudes) {
+      for (std::size_t lane = 0; lane < lanes_.size(); ++lane) cut_end_wall(lane, attitude);
+      auto dig = best(Aim::wall);
+      candidates_.clear();
+      if (dig && !dig->may_stall) return dig;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<StepDig> best(Aim aim) {
+    parallel_for(candidates_.size(), 0, [&](std::size_t i) { weigh(candidates_[i]); });
+    const auto end = std::stable_partition(candidates_.begin(), candidates_.end(),
+                                           [](const Candidate& each) { return each.worth > 0.0; });
+    candidates_.erase(end, candidates_.end());
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
     std::optional<StepDig> best;
     std::size_t lane = 0;  // of the best
     std::size_t confirmed = 0;
-    for (const Candidate& candidate : candidates_) {
-      if (confirmed == most_confirmed || !(candidate.worth > 0.0)) break;
-      auto dig = confirm(candidate);
-      if (!dig) continue;
-      ++confirmed;
-      if (best && !(dig->worth > best->worth)) continue;
-      best = std::move(dig);
-      lane = candidate.lane;
+    for (std::size_t next = 0; next < candidates_.size() && confirmed < most_confirmed;) {
+      const std::size_t count = std::min(most_confirmed - confirmed, candidates_.size() - next);
+      std::vector<std::optional<StepDig>> digs(count);
+      parallel_for(count, 0, [&](std::size_t i) { digs[i] = confirm(candidates_[next + i], aim); });
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!digs[i]) continue;
+        ++confirmed;
+        if (best && !(digs[i]->worth > best->worth)) continue;
+        best = std::move(digs[i]);
+        lane = candidates_[next + i].lane;
+      }
+      next += count;
     }
     if (best) add_approach(lane, best->path);
     return best;
   }
 
- private:
   Rectangle extent() const {
     const double cell = task_.ground.bank.cell_size;
     const auto on_line = [&](double value) { return cell * std::floor(value / cell); };
@@ -124,45 +162,72 @@ class StepSearch {
     if (auto* poses = std::get_if<std::vector<DigPose>>(&down)) path.approach = std::move(*poses);
   }
 
-  void lay_out(std::size_t lane) {
-    const LaneView& view = lanes_[lane].view;
+  DigPathOptions rules_in(std::size_t lane) const {
     DigPathOptions rules;
     rules.floor = lanes_[lane].floor;
     rules.penetration_clearance = heel_clearance;
+    return rules;
+  }
+
+  void lay_out(std::size_t lane) {
+    if (task_.finishing) return lay_out_passes(lane);
+    for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
+      if (is_worth_a_dig(lanes_[lane], start))
+        lay_out_layers(lane, start, attitudes, rules_in(lane));
+    }
+  }
+
+  void lay_out_passes(std::size_t lane) {
     const GroundProfile& ground = lanes_[lane].ground;
-    const double last = task_.finishing ? least_pass * (task_.far - task_.near) : start_step;
-    for (double start = task_.far; start > task_.near + last; start -= start_step) {
-      if (std::isnan(ground(start) - rules.floor(start)) || !is_worth_a_dig(lanes_[lane], start))
-        continue;
-      if (task_.finishing) {
-        rules.drag_keeps_angle = true;
-        for (const double angle : finish_angles) {
-          const double down = std::max(0.0, ground(start) - rules.floor(start));
-          const double drag = start - down / std::tan(angle) - nearest(angle);
-          if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
-        }
-        if (start == task_.far) cut_end_wall(lane, rules);
-        continue;
-      }
-      const double level = mean_ground(view, start - level_to, start - level_from);
-      if (std::isnan(level)) continue;
-      for (const double cut : cut_depths) {
-        if (cut > task_.deepest_cut) break;
-        const double depth = std::max(ground(start) - level, 0.0) + cut;
-        for (const Attitude& attitude : attitudes) {
-          rules.drag_keeps_angle = attitude.is_kept;
-          lay_out_layer(lane, start, {attitude.angle, depth, ground(start) - depth}, rules);
-        }
-        if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
+    DigPathOptions rules = rules_in(lane);
+    rules.drag_keeps_angle = true;
+    const double last = task_.near + least_pass * (task_.far - task_.near);
+    for (double start = task_.far; start > last; start -= start_step) {
+      if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      const double down = std::max(0.0, ground(start) - rules.floor(start));
+      for (const double angle : finish_angles) {
+        const double drag = start - down / std::tan(angle) - nearest(angle);
+        if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
       }
     }
   }
 
-  /// Down the end of the work, as steep as the machine can.
-  void cut_end_wall(std::size_t lane, DigPathOptions rules) {
-    rules.drag_keeps_angle = false;
-    for (const double angle : wall_angles) {
-      for (const double drag : wall_drags) add(lane, {angle, 2.0, drag}, task_.far, rules);
+  /// Layers of all depths from there.
+  template <typename Attitudes>
+  void lay_out_layers(std::size_t lane, double start, const Attitudes& with, DigPathOptions rules) {
+    const GroundProfile& ground = lanes_[lane].ground;
+    const double level = mean_ground(lanes_[lane].view, start - level_to, start - level_from);
+    if (std::isnan(level)) return;
+    for (const double cut : cut_depths) {
+      if (cut > task_.deepest_cut) break;
+      const double depth = std::max(ground(start) - level, 0.0) + cut;
+      for (const Attitude& attitude : with) {
+        rules.drag_keeps_angle = attitude.is_kept;
+        lay_out_layer(lane, start, {attitude.angle, depth, ground(start) - depth}, rules);
+      }
+      if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
+    }
+  }
+
+  /// Steep layers from the end of the work while soil stands before it: a flat cut would leave a
+  /// ramp there, which is costly to take off by itself.
+  void cut_end_wall(std::size_t lane, const Attitude& attitude) {
+    const LaneView& view = lanes_[lane].view;
+    double sum = 0.0;
+    int count = 0;
+    for (Index col = 0; col < view.columns(); ++col) {
+      if (view.x(col) < task_.far - wall_from || view.x(col) > task_.far - wall_to) continue;
+      sum += lanes_[lane].excess(col);
+      ++count;
+    }
+    if (count == 0 || sum <= high_wall * count) return;
+    DigPathOptions rules = rules_in(lane);
+    lay_out_layers(lane, task_.far, std::array{attitude}, rules);
+    // From its top, where what lies before it is deeper already.
+    const double top = lanes_[lane].ground(task_.far);
+    for (const double cut : cut_depths) {
+      if (cut > task_.deepest_cut) break;
+      lay_out_layer(lane, task_.far, {attitude.angle, cut, top - cut}, rules);
     }
   }
 
@@ -212,6 +277,7 @@ class StepSearch {
 
   bool is_worth_a_dig(const Lane& lane, double start) const {
     const LaneView& view = lane.view;
+    if (std::isnan(lane.ground(start) - lane.floor(start))) return false;
     const double first = view.x(0);
     const auto col = static_cast<Index>((start - start_step - first) / view.surface().cell_size);
     return col > 0 && col < view.columns() && lane.excess(col) > least_excess;
@@ -244,8 +310,15 @@ class StepSearch {
 
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
+    if (is_barren(task_.lanes[lane], start)) return;
     auto path = make_dig_path(machine_, parameters, start, lanes_[lane].ground, rules);
     if (auto* made = std::get_if<DigPath>(&path)) candidates_.push_back({lane, std::move(*made)});
+  }
+
+  bool is_barren(double lane, double start) const {
+    return std::any_of(task_.barren.begin(), task_.barren.end(), [&](const DigStart& each) {
+      return std::abs(each.lane - lane) < same_lane && std::abs(each.along - start) < same_start;
+    });
   }
 
   CycleOptions cycle() const {
@@ -259,7 +332,7 @@ class StepSearch {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
   }
 
-  void weigh(Candidate& candidate) {
+  void weigh(Candidate& candidate) const {
     const Terrain& ground = lanes_[candidate.lane].view.ground().terrain();
     const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle());
     if (!std::holds_alternative<PlannedDig>(dig)) return;
@@ -267,7 +340,7 @@ class StepSearch {
     candidate.worth = candidate.dig.payload_mass / cost(candidate.dig);
   }
 
-  std::optional<StepDig> confirm(const Candidate& candidate) const {
+  std::optional<StepDig> confirm(const Candidate& candidate, Aim aim) const {
     const LaneView& view = lanes_[candidate.lane].view;
     const Terrain& ground = view.ground().terrain();
     const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle());
@@ -279,19 +352,37 @@ class StepSearch {
     step.lane = task_.lanes[candidate.lane];
     step.path = candidate.path;
     step.dig = found->dig;
-    step.change = view.change(found->result.patch, task_.slack);
-    double shaped = std::max(step.change.shaped, cleared_worth * step.change.cleared);
-    if (!(shaped > 0.0)) shaped = lifted_worth * step.dig.payload_volume;
-    const double deep_price = task_.finishing ? 1.0 : too_deep_price;
-    const double gain = (task_.finishing ? shaped : step.change.gained) -
-                        deep_price * step.change.too_deep - spill_price * step.change.spilled;
-    if (!(gain > 0.0)) return std::nullopt;
-    step.worth = (hard != nullptr ? 1.0 : risky) * gain / cost(step.dig);
+    step.change = view.change(found->result.patch, {task_.slack, task_.far - wall_from});
+    const double gain = gain_of(step, aim);
+    if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;
+    step.may_stall = hard == nullptr;
+    step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
     if (hard != nullptr) {
       step.strength_share = std::log(hard->energy / step.dig.energy) /
                             std::log(task_.hard_factor / task_.strength_factor);
     }
     return step;
+  }
+
+  /// Volume of the design that a dig gains, less what it spoils.
+  double gain_of(const StepDig& step, Aim aim) const {
+    const ShapeChange& change = step.change;
+    const double deep_price = aim == Aim::shape ? 1.0 : too_deep_price;
+    const double spoiled = deep_price * change.too_deep + spill_price * change.spilled;
+    if (aim == Aim::wall) return change.gained + wall_worth * change.at_end - spoiled;
+    if (aim == Aim::volume) return change.gained - spoiled;
+    const double shaped = std::max(change.shaped, cleared_worth * change.cleared);
+    return (shaped > 0.0 ? shaped : lifted_worth * step.dig.payload_volume) - spoiled;
+  }
+
+  /// Less is not worth a cycle.
+  bool is_enough(const StepDig& step, Aim aim) const {
+    const ShapeChange& change = step.change;
+    if (aim == Aim::shape)
+      return change.shaped > worth_a_dig || step.dig.payload_volume > least_lifted;
+    if (aim == Aim::volume) return change.gained > least_gain * capacity_;
+    if (task_.finishing) return change.at_end > least_lifted;
+    return change.gained + change.at_end > least_at_wall * capacity_;
   }
 
   const StepTask& task_;

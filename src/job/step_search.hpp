@@ -23,9 +23,11 @@ struct StepTask {
   const Terrain& ground;
   BasePose base;
   DumpPlace dump;
-  std::vector<double> lanes;      ///< beside the swing axis [m]
-  double near = 0.0;              ///< from the swing axis to the nearest part of the work [m]
-  double far = 0.0;               ///< to the farthest [m]
+  const std::vector<DigStart>& barren;  ///< digs that lifted much less than foretold
+  std::vector<double> lanes = {};       ///< beside the swing axis [m]
+  double near = 0.0;                    ///< from the swing axis to the nearest part of the work [m]
+  double far = 0.0;                     ///< to the farthest [m]
+  bool ends_at_wall = false;            ///< there, the design ends
   double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
   bool finishing = false;         ///< along the floor, for its shape
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
@@ -42,6 +44,7 @@ struct StepDig {
   PlannedDig dig;     ///< with its cycle
   ShapeChange change;
   double strength_share = 0.0;  ///< of ln of the energy in ln of the soil's strength [-]
+  bool may_stall = false;       ///< if the soil is as strong as StepTask::hard_factor
   double worth = 0.0;           ///< volume of the design per cost of the cycle [m^3/J]
 };
 
