@@ -7,21 +7,20 @@
 #include <memory>
 #include <vector>
 
-#include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/sight_lines.hpp"
 #include "scans/map_sampling.hpp"
+#include "scans/return_gaps.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double standing = 0.2;  // ours: nearer to the top of a known obstacle it still stands [m]
-constexpr double in_the_way = 0.3;       // ours: a thing as high is an obstacle [m]
-constexpr double between_points = 0.25;  // ours: a gap as wide counts as seen [m]
-constexpr double filled_sd = 0.03;       // ours: of a height in it [m]
-constexpr int samples_per_cell = 8;      // of the tip's line
+constexpr double in_the_way = 0.3;   // ours: a thing as high is an obstacle [m]
+constexpr int samples_per_cell = 8;  // of the tip's line
 
 Eigen::ArrayXXd known_or(const Eigen::ArrayXXd& layer, double other) {
   return layer.isNaN().select(other, layer);
@@ -71,9 +70,7 @@ struct RowsUnder {
 };
 
 /// By how much the ground that was known lies above the scan before where nothing changed.
-double offset_of(const GroundState& ground, const SurfacePair& surfaces, const AreaChange& area) {
-  const HeightMap& before = surfaces.before.height;
-  const Eigen::ArrayXXd known = layer_on(before, ground.terrain.bank, ground.terrain.surface().z);
+double offset_of(const Eigen::ArrayXXd& known, const HeightMap& before, const AreaChange& area) {
   std::vector<double> offsets;
   for_each_cell(known, [&](Cell at) {
     const double offset = known(at.row, at.col) - before.z(at.row, at.col);
@@ -87,14 +84,38 @@ int cause_of(const VolumeChange& change, int zone) {
   return change.zones[static_cast<std::size_t>(zone)].kind == ZoneKind::other ? 2 : 1;
 }
 
-/// Ground between the points of a scan is as high as theirs.
-void fill_between_points(SeenGround& seen) {
-  const HeightMap& map = seen.surface;
-  const Eigen::ArrayXXd filled = resampled(map, map.extent(), map.cell_size, between_points)
-                                     .z.block(0, 0, map.z.rows(), map.z.cols());
-  const Eigen::ArrayXXd own = seen.deviation;
-  seen.deviation = (map.z.isNaN() && !filled.isNaN()).select(filled_sd, own);
-  seen.surface.z = (map.z.isNaN() && seen.obstacles.isNaN()).select(filled, map.z);
+/// The ground before a survey, on its grid.
+struct GroundBefore {
+  Eigen::ArrayXXd surface;    ///< NaN: not known
+  Eigen::ArrayXXd obstacles;  ///< tops; NaN: none
+
+  GroundBefore(const GroundState& ground, const HeightMap& grid)
+      : surface(layer_on(grid, ground.terrain.bank, ground.terrain.surface().z)) {
+    const Eigen::ArrayXXd& tops = ground.terrain.obstacles;
+    obstacles = tops.size() > 0 ? layer_on(grid, ground.terrain.bank, tops)
+                                : Eigen::ArrayXXd(0.0 * surface + std::nan(""));
+  }
+};
+
+/// Ground is seen where there are returns, and closely between them but not below what stands on
+/// it. What was filled to tell a volume is not.
+void keep_to_returns(const Eigen::ArrayXXi& returns, const GroundBefore& known, SeenGround& seen) {
+  Eigen::ArrayXXd& z = seen.surface.z;
+  z = (returns > 0).select(z, std::nan(""));
+  Eigen::ArrayXXd between = heights_between_returns(z, known.surface, seen.surface.cell_size);
+  between = known.obstacles.isNaN().select(between, std::nan("")).eval();
+  if (seen.obstacles.size() > 0) {
+    between = seen.obstacles.isNaN().select(between, std::nan("")).eval();
+  }
+  seen.deviation = between.isNaN().select(seen.deviation, between_returns_sd).eval();
+  z = between.isNaN().select(z, between).eval();
+}
+
+/// Accepted returns in each cell, but for those that lie in part on an edge and in part behind it.
+Eigen::ArrayXXi returns_of(const Surface& surface) {
+  if (surface.sensors.size() != 1) return surface.points;
+  Surface own = surface;
+  return (drop_mixed_returns(own) != 0).select(0, surface.points);
 }
 
 /// Top of the bank that the bucket left: by what it cut, or below the hole that is seen by the soil
@@ -118,7 +139,7 @@ Eigen::ArrayXXd bank_left(const DigInGround& dig) {
 }
 
 /// The survey after a dig, in the heights of the known ground.
-SeenGround seen_after(const DigInGround& dig, double offset) {
+SeenGround seen_after(const DigInGround& dig, const GroundBefore& known, double offset) {
   const AreaChange& area = dig.change.areas.front();
   const HeightMap& before = dig.surfaces.before.height;
   SeenGround seen;
@@ -145,17 +166,21 @@ SeenGround seen_after(const DigInGround& dig, double offset) {
     height = std::nan("");
   });
   seen.swept = bank_left(dig) + offset;
-  fill_between_points(seen);
+  keep_to_returns(returns_of(dig.surfaces.after), known, seen);
+  if (dig.known.cut.size() == 0) {
+    seen.swept = seen.surface.z.isNaN().select(std::nan(""), seen.swept).eval();
+  }
   return seen;
 }
 
-/// The ground before as the scan before shows it, where it was not known.
-SeenGround seen_before(const GroundState& ground, const Surface& before, double offset) {
+/// The ground before as a scan before shows it, where it was not known.
+SeenGround seen_before(const Surface& before, const GroundBefore& known, double offset) {
   SeenGround seen;
   seen.surface = before.height;
-  const Eigen::ArrayXXd known = layer_on(before.height, ground.terrain.bank, ground.terrain.bank.z);
-  seen.surface.z = known.isNaN().select(before.height.z + offset, std::nan(""));
-  if (before.variance.size() > 0) seen.deviation = before.variance.sqrt();
+  seen.surface.z += offset;
+  seen.deviation = before.variance.sqrt();
+  keep_to_returns(before.points, known, seen);
+  seen.surface.z = known.surface.isNaN().select(seen.surface.z, std::nan("")).eval();
   seen.changed.setZero(before.height.z.rows(), before.height.z.cols());
   return seen;
 }
@@ -245,13 +270,18 @@ Fallback fallback_in(const KnownCut& cut) {
 }
 
 GroundState ground_after(const DensityOptions& options, const DigInGround& dig) {
-  const double offset = offset_of(*options.ground, dig.surfaces, dig.change.areas.front());
-  SeenGround before = seen_before(*options.ground, dig.surfaces.before, offset);
-  SeenGround after = seen_after(dig, offset);
-  before.time = after.time = options.scan_time;
+  const Surface& before = dig.surfaces.before;
+  const GroundBefore known(*options.ground, before.height);
+  const double offset = offset_of(known.surface, before.height, dig.change.areas.front());
+  SeenGround after = seen_after(dig, known, offset);
+  after.time = options.scan_time;
   std::optional<double> loose;
   if (options.soil.kind) loose = options.soil.kind->void_ratio_loose;
-  return updated_ground(updated_ground(*options.ground, before), after, loose);
+  const bool was_scanned = before.points.size() > 0;
+  if (!was_scanned) return updated_ground(*options.ground, after, loose);
+  SeenGround first = seen_before(before, known, offset);
+  first.time = options.scan_time;
+  return updated_ground(updated_ground(*options.ground, first), after, loose);
 }
 
 }  // namespace excavplan

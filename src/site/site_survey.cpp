@@ -8,6 +8,8 @@
 
 #include <excavplan/scans/scan_terrain.hpp>
 
+#include "ground/grid_cells.hpp"
+#include "scans/return_gaps.hpp"
 #include "scans/scan_pairs.hpp"
 #include "scans/scan_reading.hpp"
 #include "site/site_grid.hpp"
@@ -82,24 +84,49 @@ bool fits_ground(const DensityEstimate& estimate) {
   });
 }
 
-using Cells = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
-
-/// Enters bank that a scan shows for the first time.
-void enter(const HeightMap& seen, const Cells& is_new, double time, GroundState& ground) {
-  ground.terrain.bank.z = is_new.select(seen.z, ground.terrain.bank.z).eval();
-  ground.terrain.loose = is_new.select(0.0, ground.terrain.loose).eval();
-  ground.seen = is_new.select(time, ground.seen).eval();
-  ground.deviation = is_new.select(first_sd, ground.deviation).eval();
+/// Cells of a grid that a scan has points in.
+Mask returns_in(const Scan& scan, const HeightMap& grid) {
+  Mask returns = Mask::Constant(grid.z.rows(), grid.z.cols(), false);
+  visit_scan(scan, [&](const std::vector<Eigen::Vector3d>& points) {
+    for (const Eigen::Vector3d& point : points) {
+      if (const auto cell = cell_at(grid, point.x(), point.y()))
+        returns(cell->row, cell->col) = true;
+    }
+  });
+  return returns;
 }
 
-/// Takes in what no scan showed before.
-void add_new_ground(const Scan& scan, double time, GroundState& ground) {
+/// Enters bank that a scan shows for the first time: where it has returns, and closely between
+/// them. What a terrain fills beyond that nobody saw.
+void enter(const Scan& scan, const HeightMap& shown, double time, GroundState& ground) {
+  HeightMap& bank = ground.terrain.bank;
+  const Eigen::ArrayXXd seen = returns_in(scan, shown).select(shown.z, std::nan(""));
+  const Eigen::ArrayXXd between = heights_between_returns(seen, {}, shown.cell_size);
+  const Eigen::Array2d off = ((shown.origin - bank.origin) / bank.cell_size).array().round();
+  const auto& obstacles = ground.terrain.obstacles;
+  for_each_cell(seen, [&](Cell at) {
+    const Cell to = {at.row + static_cast<Eigen::Index>(off.y()),
+                     at.col + static_cast<Eigen::Index>(off.x())};
+    const bool is_filled = std::isnan(seen(at.row, at.col));
+    const double z = is_filled ? between(at.row, at.col) : seen(at.row, at.col);
+    const bool stands = obstacles.size() > 0 && !std::isnan(obstacles(to.row, to.col));
+    if (std::isnan(z) || stands || !std::isnan(bank.z(to.row, to.col))) return;
+    bank.z(to.row, to.col) = z;
+    ground.terrain.loose(to.row, to.col) = 0.0;
+    ground.seen(to.row, to.col) = time;
+    ground.deviation(to.row, to.col) = is_filled ? between_returns_sd : first_sd;
+  });
+}
+
+/// Takes in what no scan showed before. @param extent  of the scan, within the ground
+void add_new_ground(const Scan& scan, const Rectangle& extent, double time, GroundState& ground) {
   const HeightMap& grid = ground.terrain.bank;
   if (!grid.z.isNaN().any()) return;
-  const HeightMap seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain.bank;
-  Cells is_new = grid.z.isNaN() && !seen.z.isNaN();
-  if (ground.terrain.obstacles.size() > 0) is_new = is_new && ground.terrain.obstacles.isNaN();
-  enter(seen, is_new, time, ground);
+  const Rectangle whole = grid.extent();
+  const Rectangle near = on_grid(extent, grid.cell_size);
+  const Rectangle window = {std::max(near.x_min, whole.x_min), std::max(near.y_min, whole.y_min),
+                            std::min(near.x_max, whole.x_max), std::min(near.y_max, whole.y_max)};
+  enter(scan, terrain_from_scan(scan, window, grid.cell_size).terrain.bank, time, ground);
 }
 
 }  // namespace
@@ -110,7 +137,7 @@ GroundState first_ground(const Scan& scan, double time, const SiteSettings& sett
   const HeightMap& grid = ground.terrain.bank;
   Terrain seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain;
   if (seen.obstacles.size() > 0) ground.terrain.obstacles = std::move(seen.obstacles);
-  enter(seen.bank, !seen.bank.z.isNaN(), time, ground);
+  enter(scan, seen.bank, time, ground);
   ground.frame = settings.frame;
   ground.soil = settings.soil.name;
   return ground;
@@ -133,8 +160,8 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, Gro
   if (result.fits) {
     result.ground = std::move(*estimate.ground_after);
     const auto& moved_by = estimate.registration;
-    add_new_ground(moved_by ? corrected(event.scan, moved_by->correction) : event.scan, event.time,
-                   result.ground);
+    add_new_ground(moved_by ? corrected(event.scan, moved_by->correction) : event.scan, extent,
+                   event.time, result.ground);
     if (is_apart) estimate = estimate_at_machine(event, settings, ground);
   } else {
     result.ground = std::move(ground);
