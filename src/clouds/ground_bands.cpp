@@ -162,10 +162,20 @@ double GroundBands::reach_of(double off_plane) const {
   return std::max(gap_ + bend * off_plane, crumb);
 }
 
+CellsAround GroundBands::around_group(Index group) const {
+  const Index rows = levels_.height.rows();
+  const Index row = group % rows, column = group / rows;
+  if (points_.side() == 1) return surroundings_of(levels_.height, row, column);
+  if (column != column_of_around_) around_.assign(static_cast<std::size_t>(rows), std::nullopt);
+  column_of_around_ = column;
+  auto& around = around_[static_cast<std::size_t>(row)];
+  if (!around) around = surroundings_of(levels_.height, row, column);
+  return *around;
+}
+
 Band GroundBands::by_groups(Index cell) const {
   const Index group = points_.group_of(cell);
-  const Index rows = levels_.height.rows();
-  CellsAround around = surroundings_of(levels_.height, group % rows, group / rows);
+  CellsAround around = around_group(group);
   if (points_.in_group(group) >= trusted) {
     const double level = levels_.height(group);
     around.low = std::min(around.low, level);

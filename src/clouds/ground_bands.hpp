@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -44,6 +46,7 @@ class GroundBands {
  private:
   double reach_of(double off_plane) const;
   Band by_groups(Eigen::Index cell) const;
+  CellsAround around_group(Eigen::Index group) const;
   void find_fine_levels();
 
   PointsByCell& points_;
@@ -51,6 +54,9 @@ class GroundBands {
   Cover cover_;
   double gap_;
   Eigen::ArrayXXd fine_;  ///< of the cells alone, at their centres; NaN where points are few
+  /// Of one column of groups at a time, whose cells follow each other.
+  mutable std::vector<std::optional<CellsAround>> around_;
+  mutable Eigen::Index column_of_around_ = -1;
 };
 
 /// Distances from the ground in quarters of its gap, up to sixteen gaps.

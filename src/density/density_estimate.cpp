@@ -61,11 +61,18 @@ std::optional<Rectangle> area_of_work(const DensityOptions& options) {
   return worked_area(*options.dug_path);
 }
 
+/// The known ground for the scan before.
+OutlinedPair outlined_in_ground(const GroundState& ground, const Scan& after) {
+  const ScanOutline seen = outline(after);
+  const Scan before = scan_of(ground, seen.extent.value_or(ground.terrain.bank.extent()));
+  return outlined({before, after}, outline(before), seen);
+}
+
 OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
   OutlinedScans seen;
   seen.stands = options.ground && !is_given(scans.before);
-  seen.dig = outlined({seen.stands ? scan_of(*options.ground) : scans.before, scans.after},
-                      options.threads);
+  seen.dig = seen.stands ? outlined_in_ground(*options.ground, scans.after)
+                         : outlined({scans.before, scans.after}, options.threads);
   if (options.ground) seen.dig.scans.left_out = area_of_work(options);
   seen.cell_size = seen.dig.cell_size();
   if (options.ground) seen.cell_size = cell_on(*options.ground, seen.cell_size);

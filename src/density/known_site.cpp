@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -185,24 +187,38 @@ SeenGround seen_before(const Surface& before, const GroundBefore& known, double 
   return seen;
 }
 
-}  // namespace
-
-Scan scan_of(const GroundState& ground) {
-  const HeightMap surface = ground.terrain.surface();
+/// Four on each known cell whose centre lies in a rectangle.
+std::shared_ptr<Cloud> points_on(const GroundState& ground, const Rectangle& area) {
+  const HeightMap& bank = ground.terrain.bank;
   auto cloud = std::make_shared<Cloud>();
-  const double quarter = 0.25 * surface.cell_size;
-  for_each_cell(surface.z, [&](Cell at) {
-    const double z = surface.z(at.row, at.col);
-    if (std::isnan(z)) return;
-    for (const double x : {-quarter, quarter}) {
-      for (const double y : {-quarter, quarter}) {
-        cloud->points.emplace_back(surface.x(at.col) + x, surface.y(at.row) + y, z);
+  const double quarter = 0.25 * bank.cell_size;
+  for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
+    const double x = bank.x(col);
+    if (x < area.x_min || x > area.x_max) continue;
+    for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
+      const double y = bank.y(row), z = bank.z(row, col) + ground.terrain.loose(row, col);
+      if (std::isnan(z) || y < area.y_min || y > area.y_max) continue;
+      for (const double dx : {-quarter, quarter}) {
+        for (const double dy : {-quarter, quarter}) cloud->points.emplace_back(x + dx, y + dy, z);
       }
     }
-  });
+  }
   cloud->width = cloud->points.size();
+  return cloud;
+}
+
+}  // namespace
+
+Scan scan_of(const GroundState& ground, const Rectangle& near) {
+  constexpr double around = 1.0;         // ours: scans are moved onto the ground by less [m]
+  constexpr std::size_t fewest = 10000;  // points, ours
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  std::shared_ptr<Cloud> cloud = points_on(
+      ground, {near.x_min - around, near.y_min - around, near.x_max + around, near.y_max + around});
+  if (cloud->points.size() < fewest)
+    cloud = points_on(ground, {-endless, -endless, endless, endless});
   Scan scan;
-  scan.clouds = {cloud};
+  scan.clouds = {std::move(cloud)};
   scan.z_is_up = true;
   scan.name = "known ground";
   return scan;

@@ -24,8 +24,9 @@ inline constexpr double untold_loose_sd = 0.02;
 /// Standard deviation of the height of a driven path, in known ground [m]; ours.
 inline constexpr double known_tracking_sd = 0.02;
 
-/// Points on each known cell of the ground, as a scan before that nobody made.
-Scan scan_of(const GroundState& ground);
+/// Points on each known cell of the ground, as a scan before that nobody made. @param near  what
+/// another scan sees, to a metre around which the ground is told if enough of it is known
+Scan scan_of(const GroundState& ground, const Rectangle& near);
 
 /// Gives the surface of a scan of scan_of() the deviations of the ground.
 void set_deviation(const GroundState& ground, Surface& before);

@@ -72,6 +72,8 @@ std::optional<std::string> fault_of_layer(const StateLayer& layer, const GroundS
   if (values.rows() != grid.z.rows() || values.cols() != grid.z.cols()) {
     return std::string("layer ") + layer.band + " must be as large as the bank";
   }
+  const auto is_within = (values >= layer.lowest && values <= layer.highest) || values.isNaN();
+  if (is_within.all()) return std::nullopt;
   std::optional<std::string> fault;
   for_each_cell(values, [&](Cell cell) {
     const double value = values(cell.row, cell.col);

@@ -60,12 +60,23 @@ SightLines::SightLines(const HeightMap& map, const Eigen::Vector3d& sensor,
                        const Eigen::ArrayXXd& seen)
     : map_(map),
       sensor_(sensor),
+      range_(map.z.rows(), map.z.cols()),
       tangent_(Eigen::ArrayXXd::Constant(map.z.rows(), map.z.cols(), infinity)) {
-  std::vector<Cell> cells;
+  struct Far {
+    double range;
+    Cell at;
+  };
+  std::vector<Far> cells;
   cells.reserve(static_cast<std::size_t>(map.z.size()));
-  for_each_cell(map.z, [&](Cell at) { cells.push_back(at); });
-  std::sort(cells.begin(), cells.end(), [&](Cell a, Cell b) { return range(a) > range(b); });
-  for (const Cell at : cells) {
+  for_each_cell(map.z, [&](Cell at) {
+    const double range = std::hypot(map.x(at.col) - sensor.x(), map.y(at.row) - sensor.y());
+    range_(at.row, at.col) = range;
+    cells.push_back({range, at});
+  });
+  std::sort(cells.begin(), cells.end(),
+            [](const Far& a, const Far& b) { return a.range > b.range; });
+  for (const Far& cell : cells) {
+    const Cell at = cell.at;
     const Behind next = behind(at);
     const double one = tangent_at(next.one, seen);
     const double two = tangent_at(next.two, seen);
@@ -123,10 +134,6 @@ SightLines::Behind SightLines::behind(Cell at) const {
   return {{row, at.col}, {row, at.col + sign(way.x())}, std::abs(way.x()) / longer};
 }
 
-double SightLines::range(Cell at) const {
-  return std::hypot(map_.x(at.col) - sensor_.x(), map_.y(at.row) - sensor_.y());
-}
-
 bool SightLines::is_inside(Cell at) const {
   return at.row >= 0 && at.col >= 0 && at.row < map_.z.rows() && at.col < map_.z.cols();
 }
@@ -141,6 +148,7 @@ double SightLines::tangent_at(Cell at, const Eigen::ArrayXXd& seen) const {
 
 AllSightLines::AllSightLines(const HeightMap& map, const Surface& places)
     : seen_from_(places.seen_from) {
+  lines_.reserve(places.sensors.size());
   for (std::size_t i = 0; i < places.sensors.size(); ++i) {
     Eigen::ArrayXXd seen = map.z;
     for_each_cell(seen, [&](Cell at) {

@@ -46,12 +46,13 @@ class SightLines {
     double share;  ///< of the second
   };
   Behind behind(Cell at) const;
-  double range(Cell at) const;
+  double range(Cell at) const { return range_(at.row, at.col); }
   bool is_inside(Cell at) const;
   double tangent_at(Cell at, const Eigen::ArrayXXd& seen) const;
 
   const HeightMap& map_;
   Eigen::Vector3d sensor_;
+  Eigen::ArrayXXd range_;    ///< of each cell in plan [m]
   Eigen::ArrayXXd tangent_;  ///< of the lowest ray over a cell; infinite where there is none
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "ground/grid_cells.hpp"
 
@@ -12,18 +13,36 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double rounding = 1e-6;  // of a cell
+
 /// First cell whose centre is at or above a coordinate counted in cells from the corner.
 Index first_centre(double from, Index cells) {
-  constexpr double rounding = 1e-6;
   const double first = std::ceil(from - 0.5 - rounding);
   return static_cast<Index>(std::clamp(first, 0.0, static_cast<double>(cells)));
 }
 
-/// The value of a cell is that of its centre: elsewhere it would be moved by up to half a cell.
-bool lies_off_centre(const HeightMap& grid, const Eigen::Vector2d& at) {
-  constexpr double rounding = 1e-6;
-  const Eigen::Array2d cells = (at - grid.origin) / grid.cell_size;
-  return ((cells - cells.floor() - 0.5).abs() > rounding).any();
+/// The cells along one axis whose centres lie in a cell of another grid.
+struct Span {
+  Index first, end;
+  bool is_off_centre;  ///< of its own cell: there a value would be moved by up to half a cell
+};
+
+/// One for each column of `other`, or for each row.
+std::vector<Span> spans_on(const HeightMap& grid, const HeightMap& other, bool of_columns) {
+  const int axis = of_columns ? 0 : 1;
+  const Index count = of_columns ? other.z.cols() : other.z.rows();
+  const Index cells = of_columns ? grid.z.cols() : grid.z.rows();
+  const double half = 0.5 * other.cell_size;
+  std::vector<Span> spans(static_cast<std::size_t>(count));
+  for (Index i = 0; i < count; ++i) {
+    const double centre = of_columns ? other.x(i) : other.y(i);
+    const auto place = [&](double at) { return (at - grid.origin(axis)) / grid.cell_size; };
+    const double own = place(centre);
+    spans[static_cast<std::size_t>(i)] = {first_centre(place(centre - half), cells),
+                                          first_centre(place(centre + half), cells),
+                                          std::abs(own - std::floor(own) - 0.5) > rounding};
+  }
+  return spans;
 }
 
 }  // namespace
@@ -39,27 +58,25 @@ double cell_value(const HeightMap& grid, const Eigen::ArrayXXd& layer, const Eig
 Eigen::ArrayXXd layer_on(const HeightMap& other, const HeightMap& grid,
                          const Eigen::ArrayXXd& layer) {
   const HeightMap map{grid.origin, grid.cell_size, layer};
+  const std::vector<Span> columns = spans_on(map, other, true);
+  const std::vector<Span> rows = spans_on(map, other, false);
   Eigen::ArrayXXd result(other.z.rows(), other.z.cols());
   for_each_cell(result, [&](Cell at) {
-    const Eigen::Vector2d centre(other.x(at.col), other.y(at.row));
-    const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5 * other.cell_size);
-    const Eigen::Vector2d from = (centre - half - grid.origin) / grid.cell_size;
-    const Eigen::Vector2d to = (centre + half - grid.origin) / grid.cell_size;
+    const Span& along_x = columns[static_cast<std::size_t>(at.col)];
+    const Span& along_y = rows[static_cast<std::size_t>(at.row)];
     double sum = 0.0;
     Index known = 0;
-    Index inside = 0;
-    for (Index row = first_centre(from.y(), layer.rows()); row < first_centre(to.y(), layer.rows());
-         ++row) {
-      for (Index col = first_centre(from.x(), layer.cols());
-           col < first_centre(to.x(), layer.cols()); ++col) {
-        ++inside;
+    for (Index row = along_y.first; row < along_y.end; ++row) {
+      for (Index col = along_x.first; col < along_x.end; ++col) {
         if (std::isnan(layer(row, col))) continue;
         sum += layer(row, col);
         ++known;
       }
     }
+    const Index inside = (along_y.end - along_y.first) * (along_x.end - along_x.first);
     double value = known > 0 ? sum / static_cast<double>(known) : std::nan("");
-    if (inside == 0 || (inside == 1 && lies_off_centre(grid, centre))) {
+    if (inside == 0 || (inside == 1 && (along_x.is_off_centre || along_y.is_off_centre))) {
+      const Eigen::Vector2d centre(other.x(at.col), other.y(at.row));
       value = height_at(map, centre.x(), centre.y());
       if (std::isnan(value)) value = cell_value(grid, layer, centre);
     }

@@ -131,11 +131,15 @@ Scan corrected(const Scan& scan, const Eigen::Matrix4d& correction) {
 
 OutlinedPair outlined(const ScanPair& scans, unsigned threads) {
   const std::vector<ScanOutline> seen = outlines({scans.before, scans.after}, threads);
-  require_points(scans.before, seen[0]);
-  require_points(scans.after, seen[1]);
-  OutlinedPair pair = {scans, seen[0], seen[1]};
-  pair.scans.before.no_data = seen[0].no_data;
-  pair.scans.after.no_data = seen[1].no_data;
+  return outlined(scans, seen[0], seen[1]);
+}
+
+OutlinedPair outlined(const ScanPair& scans, const ScanOutline& before, const ScanOutline& after) {
+  require_points(scans.before, before);
+  require_points(scans.after, after);
+  OutlinedPair pair = {scans, before, after};
+  pair.scans.before.no_data = before.no_data;
+  pair.scans.after.no_data = after.no_data;
   return pair;
 }
 

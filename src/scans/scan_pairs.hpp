@@ -32,6 +32,8 @@ struct OutlinedPair {
 
 /// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points
 OutlinedPair outlined(const ScanPair& scans, unsigned threads);
+/// @param before, after  outlines of the scans
+OutlinedPair outlined(const ScanPair& scans, const ScanOutline& before, const ScanOutline& after);
 
 /// How far a correction moves the middle of the ground, and by what angle it turns it.
 struct Displacement {

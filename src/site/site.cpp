@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -53,8 +54,11 @@ SiteManifest new_manifest(const SiteSettings& settings) {
 
 /// The heights of cells that were seen for the first time are those that they have now.
 void add_first_heights(const GroundState& now, const SiteSettings& settings, GroundState& first) {
-  first = grown(first, now.terrain.bank.extent(), settings.soil.void_ratio_loose);
+  if (!same_grid(first.terrain.bank, now.terrain.bank)) {
+    first = grown(first, now.terrain.bank.extent(), settings.soil.void_ratio_loose);
+  }
   const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> is_new = first.terrain.bank.z.isNaN();
+  if (!is_new.any()) return;
   first.terrain.bank.z = is_new.select(now.terrain.bank.z, first.terrain.bank.z).eval();
   first.terrain.loose = is_new.select(now.terrain.loose, first.terrain.loose).eval();
 }
@@ -151,14 +155,20 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
   const std::string digest = scan_digest(event.scan);
   require_new(event, digest);
   SiteUpdate update;
-  StoredSite next = site;
+  StoredSite next;
+  next.manifest = site.manifest;
+  next.belief = site.belief;
   if (is_empty()) {
     next.ground = first_ground(event.before.value_or(event.scan), event.time, settings);
     next.first = next.ground;
     update.taken = true;
+  } else {
+    next.first = site.first;
   }
   if (!is_empty() || event.before) {
-    StoredSite before = next;
+    std::optional<StoredSite> begun;
+    if (is_empty()) begun = next;
+    const StoredSite& before = begun ? *begun : site;
     SurveyedEvent seen = surveyed(event, settings, before.ground);
     update.estimate = std::move(seen.estimate);
     update.warnings = std::move(seen.warnings);

@@ -96,37 +96,54 @@ Mask returns_in(const Scan& scan, const HeightMap& grid) {
   return returns;
 }
 
+/// Bank that was never seen and below no obstacle.
+Mask is_open(const GroundState& ground) {
+  Mask open = ground.terrain.bank.z.isNaN();
+  if (ground.terrain.obstacles.size() > 0) open = open && ground.terrain.obstacles.isNaN();
+  return open;
+}
+
 /// Enters bank that a scan shows for the first time: where it has returns, and closely between
 /// them. What a terrain fills beyond that nobody saw.
-void enter(const Scan& scan, const HeightMap& shown, double time, GroundState& ground) {
-  HeightMap& bank = ground.terrain.bank;
-  const Eigen::ArrayXXd seen = returns_in(scan, shown).select(shown.z, std::nan(""));
+void enter(const Mask& returns, const HeightMap& shown, double time, GroundState& ground) {
+  const Eigen::ArrayXXd seen = returns.select(shown.z, std::nan(""));
   const Eigen::ArrayXXd between = heights_between_returns(seen, {}, shown.cell_size);
-  const Eigen::Array2d off = ((shown.origin - bank.origin) / bank.cell_size).array().round();
-  const auto& obstacles = ground.terrain.obstacles;
+  const Mask open = is_open(ground);
   for_each_cell(seen, [&](Cell at) {
-    const Cell to = {at.row + static_cast<Eigen::Index>(off.y()),
-                     at.col + static_cast<Eigen::Index>(off.x())};
+    const auto to = cell_at(ground.terrain.bank, shown.x(at.col), shown.y(at.row));
     const bool is_filled = std::isnan(seen(at.row, at.col));
     const double z = is_filled ? between(at.row, at.col) : seen(at.row, at.col);
-    const bool stands = obstacles.size() > 0 && !std::isnan(obstacles(to.row, to.col));
-    if (std::isnan(z) || stands || !std::isnan(bank.z(to.row, to.col))) return;
-    bank.z(to.row, to.col) = z;
-    ground.terrain.loose(to.row, to.col) = 0.0;
-    ground.seen(to.row, to.col) = time;
-    ground.deviation(to.row, to.col) = is_filled ? between_returns_sd : first_sd;
+    if (std::isnan(z) || !to || !open(to->row, to->col)) return;
+    ground.terrain.bank.z(to->row, to->col) = z;
+    ground.terrain.loose(to->row, to->col) = 0.0;
+    ground.seen(to->row, to->col) = time;
+    ground.deviation(to->row, to->col) = is_filled ? between_returns_sd : first_sd;
   });
+}
+
+/// The cells of a map that a rectangle reaches, without heights.
+HeightMap window_of(const HeightMap& map, const Rectangle& area) {
+  const Rectangle whole = map.extent();
+  const Rectangle near = on_grid(area, map.cell_size);
+  return flat_ground({std::max(near.x_min, whole.x_min), std::max(near.y_min, whole.y_min),
+                      std::min(near.x_max, whole.x_max), std::min(near.y_max, whole.y_max)},
+                     map.cell_size, std::nan(""));
 }
 
 /// Takes in what no scan showed before. @param extent  of the scan, within the ground
 void add_new_ground(const Scan& scan, const Rectangle& extent, double time, GroundState& ground) {
-  const HeightMap& grid = ground.terrain.bank;
-  if (!grid.z.isNaN().any()) return;
-  const Rectangle whole = grid.extent();
-  const Rectangle near = on_grid(extent, grid.cell_size);
-  const Rectangle window = {std::max(near.x_min, whole.x_min), std::max(near.y_min, whole.y_min),
-                            std::min(near.x_max, whole.x_max), std::min(near.y_max, whole.y_max)};
-  enter(scan, terrain_from_scan(scan, window, grid.cell_size).terrain.bank, time, ground);
+  const HeightMap window = window_of(ground.terrain.bank, extent);
+  const Mask returns = returns_in(scan, window);
+  const Mask open = is_open(ground);
+  bool is_news = false;
+  for_each_cell(returns, [&](Cell at) {
+    if (!returns(at.row, at.col) || is_news) return;
+    const auto to = cell_at(ground.terrain.bank, window.x(at.col), window.y(at.row));
+    is_news = to && open(to->row, to->col);
+  });
+  if (!is_news) return;
+  enter(returns, terrain_from_scan(scan, window.extent(), window.cell_size).terrain.bank, time,
+        ground);
 }
 
 }  // namespace
@@ -137,15 +154,16 @@ GroundState first_ground(const Scan& scan, double time, const SiteSettings& sett
   const HeightMap& grid = ground.terrain.bank;
   Terrain seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain;
   if (seen.obstacles.size() > 0) ground.terrain.obstacles = std::move(seen.obstacles);
-  enter(scan, seen.bank, time, ground);
+  enter(returns_in(scan, seen.bank), seen.bank, time, ground);
   ground.frame = settings.frame;
   ground.soil = settings.soil.name;
   return ground;
 }
 
-SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, GroundState ground) {
+SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
+                       const GroundState& before) {
   const Rectangle extent = extent_of(event.scan, event.options.threads);
-  ground = grown(ground, extent, settings.soil.void_ratio_loose);
+  GroundState ground = grown(before, extent, settings.soil.void_ratio_loose);
   SurveyedEvent result;
   const bool is_apart = event.dug && event.options.dug_path && !event.base.is_origin();
   SiteEvent in_site = event;

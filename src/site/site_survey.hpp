@@ -25,8 +25,9 @@ struct SurveyedEvent {
   bool fits = true;               ///< the scan is of this ground, and not of another place or frame
 };
 
-/// @param ground  of the site before; one that covers the scan
+/// @param before  ground of the site
 /// @throws Error as estimate_density()
-SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings, GroundState ground);
+SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
+                       const GroundState& before);
 
 }  // namespace excavplan
