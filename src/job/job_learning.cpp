@@ -16,7 +16,7 @@ constexpr double least_share = 0.1;  // of the energy of a dig that tells of the
 constexpr double strength_reading =
     0.3;  // sd of ln of the energy, as the simulator and the path are off
 constexpr double stall_surprise = 2.0;  // of a stall: so many deviations stronger than expected
-constexpr double least_doubt = 0.15;    // about ln of the strength, from place to place
+constexpr double least_doubt = 0.25;    // about ln of the strength, from place to place
 constexpr double least_fill = 0.3;      // of a bucket that teaches anything
 constexpr double least_energy = 0.1;    // of the dig in that of its cycle, to tell its own
 

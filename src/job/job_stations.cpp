@@ -24,9 +24,8 @@ constexpr double batter_step = 0.3;     // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
-constexpr double beside_edge =
-    1.0;  // of tracks that stand beside the design: beyond what spills [m]
-constexpr double beyond_near_end = 2.5;  // of the swing axis of a machine that looks at it [m]
+constexpr double beside_edge = 0.6;      // of tracks that stand beside the design, likewise [m]
+constexpr double beyond_near_end = 6.0;  // of the swing axis of a machine that looks at it [m]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
@@ -105,8 +104,8 @@ std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& s
   };
   // To the left first: the cab, with what scans, is then nearer to the edge.
   for (const double side : {frame.left + beside_edge + half, frame.right - beside_edge - half}) {
-    const JobStation station = {frame.near + beyond_near_end, side, {}, pi};
-    if (is_free(station)) return station;
+    const JobStation beside = {frame.near + beyond_near_end, side, {}, pi};
+    if (is_free(beside)) return beside;
   }
   return std::nullopt;
 }

@@ -30,8 +30,8 @@ struct JobStation {
 /// place, the machine moves aside before it goes back.
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
 
-/// A place beside the near end, to see the floor that its edge hides from all other places; nothing
-/// if the machine cannot stand on either side.
+/// A place beside the design that faces its near end, to see the floor which the edge hides from
+/// where it was dug; nothing if the machine can stand on neither side.
 std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& settings,
                                      const JobMap& map);
 

@@ -85,11 +85,11 @@ void LaneView::look_under_bucket(double bucket_width) {
         floor = std::max(floor, std::isnan(target) ? z : target);
       if (forbidden_(row, col) > floor)
         floor = std::isinf(forbidden_(row, col)) ? nan : forbidden_(row, col);
-      if (!std::isnan(z)) heights.push_back(z);
+      if (!is_edge && !std::isnan(z)) heights.push_back(z);
     }
     std::sort(heights.begin(), heights.end(), std::greater<>());
     const auto known = static_cast<Index>(heights.size());
-    const bool is_known = 2 * known > end_row_ - first_row_;
+    const bool is_known = 2 * known > end_row_ - first_row_ - 2 * inner;
     ground_at_(col) = is_known ? mean_of(heights, known) : nan;
     top_(col) = is_known ? mean_of(heights, std::max<Index>(1, known / top_part)) : nan;
     floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
@@ -101,7 +101,8 @@ GroundProfile LaneView::floor(double allowance) const {
   return between_columns(surface_, floor_.isNaN().select(ground_at_, floor_ + allowance));
 }
 
-GroundProfile LaneView::profile() const { return between_columns(surface_, top_); }
+GroundProfile LaneView::top() const { return between_columns(surface_, top_); }
+GroundProfile LaneView::mean() const { return between_columns(surface_, ground_at_); }
 
 ArrayXd LaneView::excess(double allowance) const {
   ArrayXd excess = ArrayXd::Zero(columns());
@@ -137,7 +138,9 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.gained += gained;
     if (surface_.x(cell.col) > rules.end) change.at_end += gained;
-    if (clear_(cell.row, cell.col)) {
+    // What a pass pushes aside is for the next one.
+    const bool is_under = cell.row >= first_row_ && cell.row < end_row_;
+    if (is_under && clear_(cell.row, cell.col)) {
       change.cleared += gained;
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -
                                std::max(0.0, std::abs(after - target) - slack));

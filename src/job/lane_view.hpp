@@ -21,8 +21,8 @@ struct DigStart {
 
 /// How the surface of a view changed.
 struct ShapeChange {
-  double shaped = 0.0;    ///< less that is out of tolerance, of what counts [m^3]
-  double cleared = 0.0;   ///< of what lies above the design where it can be told [m^3]
+  double shaped = 0.0;    ///< less that is out of shape, of what counts under the bucket [m^3]
+  double cleared = 0.0;   ///< of what lies above the design there [m^3]
   double gained = 0.0;    ///< of what lies above the design [m^3]
   double at_end = 0.0;    ///< of that, at the end of the work [m^3]
   double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
@@ -46,7 +46,10 @@ class LaneView {
 
   /// The highest of the design under the bucket; beside the design the ground. So much higher [m].
   GroundProfile floor(double allowance) const;
-  GroundProfile profile() const;  ///< of the ground that the bucket meets first
+  /// Of the ground under the bucket, without the strips at its edges, which it may miss: its
+  /// highest quarter, which the bucket meets first, and all of it.
+  GroundProfile top() const;
+  GroundProfile mean() const;
 
   Eigen::Index columns() const { return surface_.z.cols(); }
   double x(Eigen::Index col) const { return surface_.x(col); }

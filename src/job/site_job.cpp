@@ -21,10 +21,10 @@ namespace {
 
 // Numbers of our own choice.
 constexpr std::size_t most_unseen = 5;  // digs between two scans
-constexpr double allowance = 0.3;       // over the design, in tolerances: what is too deep stays so
+constexpr double allowance = 0.15;      // over the design, in tolerances: what is too deep stays so
 constexpr int most_passes = 8;          // along the floor from one station
 constexpr int most_fruitless = 3;       // passes in succession that took nothing off
-constexpr int most_fruitless_digs = 3;  // likewise of digs for volume
+constexpr int most_fruitless_digs = 5;  // likewise of digs for volume
 constexpr double least_mass = 15.0;     // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;     // of what a pass is to take off, else it is fruitless
 constexpr double high_share = 0.8;      // of the tolerance: higher cells call for a pass
@@ -143,15 +143,21 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   if (!dump) return std::nullopt;
   BasePose straight = record.base;
   straight.heading = frame.heading;
+  straight.z += record.learning.height_bias.mean;
   const Eigen::Vector2d at = frame.of({straight.x, straight.y});
   const WorkRange range = work_range(frame, machine, at.x());
   StepTask task{settings, map, now, straight, *dump, record.barren};
   task.near = range.near;
   task.far = range.far;
   task.ends_at_wall = range.ends_at_wall;
-  for (const double lane : stations[record.station].lanes) task.lanes.push_back(lane - at.y());
+  for (const double lane : stations[record.station].lanes) {
+    // Passes also between two lanes, over the ridges that each leaves in the other.
+    if (finishing && !task.lanes.empty())
+      task.lanes.push_back(0.5 * (task.lanes.back() + lane - at.y()));
+    task.lanes.push_back(lane - at.y());
+  }
   task.finishing = finishing;
-  task.allowance = allowance * settings.design.tolerance - record.learning.height_bias.mean;
+  task.allowance = allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
@@ -238,7 +244,9 @@ JobStep SiteJob::State::decide() {
 JobStep SiteJob::State::leave() {
   const JobProgress now = progress();
   if (now.is_finished) return step_of(JobAction::stop, "finished");
-  while (record.station + 1 < stations.size()) {
+  const bool is_idle =
+      record.passes_here == 0 && record.station > 0 && stations[record.station - 1].is_lookout();
+  while (!is_idle && record.station + 1 < stations.size()) {
     ++record.station;
     const bool looks = stations[record.station].is_lookout();
     if (looks && now.seen >= least_seen) continue;

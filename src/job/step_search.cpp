@@ -36,12 +36,13 @@ constexpr double risky = 0.4;          // what a dig is worth that may stall, ov
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
 constexpr double lifted_worth = 0.02;  // of any soil that a finishing pass lifts, likewise
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
-constexpr double same_lane = 0.1;      // of a dig that lifted little [m]
+constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
 constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
 constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
 constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
-constexpr double worth_a_dig = 0.015;   // of ground brought into shape by any dig [m^3]
+constexpr double standing = 0.05;       // of a bank in a lane over the mean ground of the lane [m]
+constexpr double least_shaped = 0.003;  // of ground that a pass brings into shape or clears [m^3]
 constexpr double wall_from = 0.5;       // before the end, soil that later digs would leave [m]
 constexpr double wall_to = 0.12;        // likewise [m]
 constexpr double high_wall = 0.03;      // of that soil, to be cut before all else [m]
@@ -56,7 +57,7 @@ struct Attitude {
 const std::array<Attitude, 4> attitudes = {{{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}}};
 const std::array<Attitude, 5> wall_attitudes = {
     {{1.3, false}, {1.2, false}, {1.1, false}, {1.0, false}, {0.8, false}}};
-const std::array<double, 3> finish_angles = {0.15, 0.3, 0.45};  // likewise
+const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
 
@@ -73,12 +74,14 @@ struct Lane {
   Lane(LaneView seen, double allowance)
       : view(std::move(seen)),
         floor(view.floor(allowance)),
-        ground(view.profile()),
+        ground(view.top()),
+        mean(view.mean()),
         excess(view.excess(allowance)) {}
 
   LaneView view;
   GroundProfile floor;
-  GroundProfile ground;
+  GroundProfile ground;   ///< that the bucket meets first
+  GroundProfile mean;     ///< under all of the bucket
   Eigen::ArrayXd excess;  ///< of each column [m]
 };
 
@@ -177,13 +180,19 @@ class StepSearch {
     }
   }
 
+  /// Along the floor; where a bank stands in the lane by layers from its top, since the bucket
+  /// cannot begin within it.
   void lay_out_passes(std::size_t lane) {
-    const GroundProfile& ground = lanes_[lane].ground;
+    const GroundProfile& ground = lanes_[lane].mean;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
     const double last = task_.near + least_pass * (task_.far - task_.near);
     for (double start = task_.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      if (lanes_[lane].ground(start) - ground(start) > standing) {
+        lay_out_layers(lane, start, attitudes, rules_in(lane));
+        continue;
+      }
       const double down = std::max(0.0, ground(start) - rules.floor(start));
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(angle);
@@ -311,7 +320,10 @@ class StepSearch {
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
     if (is_barren(task_.lanes[lane], start)) return;
-    auto path = make_dig_path(machine_, parameters, start, lanes_[lane].ground, rules);
+    const Lane& at = lanes_[lane];
+    const bool is_level = at.ground(start) - at.mean(start) <= standing;
+    const GroundProfile& ground = task_.finishing && is_level ? at.mean : at.ground;
+    auto path = make_dig_path(machine_, parameters, start, ground, rules);
     if (auto* made = std::get_if<DigPath>(&path)) candidates_.push_back({lane, std::move(*made)});
   }
 
@@ -378,8 +390,7 @@ class StepSearch {
   /// Less is not worth a cycle.
   bool is_enough(const StepDig& step, Aim aim) const {
     const ShapeChange& change = step.change;
-    if (aim == Aim::shape)
-      return change.shaped > worth_a_dig || step.dig.payload_volume > least_lifted;
+    if (aim == Aim::shape) return std::max(change.shaped, change.cleared) > least_shaped;
     if (aim == Aim::volume) return change.gained > least_gain * capacity_;
     if (task_.finishing) return change.at_end > least_lifted;
     return change.gained + change.at_end > least_at_wall * capacity_;

@@ -21,7 +21,7 @@ struct StepTask {
   const JobSettings& settings;
   const JobMap& map;
   const Terrain& ground;
-  BasePose base;
+  BasePose base;  ///< with the height that its edge keeps in truth
   DumpPlace dump;
   const std::vector<DigStart>& barren;  ///< digs that lifted much less than foretold
   std::vector<double> lanes = {};       ///< beside the swing axis [m]
