@@ -102,6 +102,19 @@ bool flush_folder_of(const std::string& path) {
   return is_flushed;
 }
 
+/// Sets errno if it returns false.
+bool write_from(int descriptor, std::uint64_t from, std::string_view text) {
+  if (::ftruncate(descriptor, static_cast<off_t>(from)) != 0) return false;
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t count = ::pwrite(descriptor, text.data() + done, text.size() - done,
+                                   static_cast<off_t>(from + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    done += static_cast<std::size_t>(count);
+  }
+  return flush(descriptor);
+}
+
 /// An open file, which is removed at the end unless it was renamed. Its functions set errno if they
 /// return false.
 class OutputFile {
@@ -217,6 +230,16 @@ void write_file(const std::string& path, const std::string& content) {
 
 void write_own_file(const std::string& path, const std::string& content) {
   write(Place{path}, path, in_one_part(content), true);
+}
+
+void write_own_tail(const std::string& path, std::uint64_t from, std::string_view text) {
+  const int descriptor =
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NOCTTY, 0666);
+  const bool is_written = descriptor >= 0 && write_from(descriptor, from, text);
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (is_written) return;
+  fail_to_write(path, reason);
 }
 
 void write_file(const std::string& path, const ContentSource& content) {

@@ -41,6 +41,9 @@ void write_journal(const std::string& path, const std::string& content);
 /// Of a folder whose files are ours alone: as write_file(), but what lies at the path is replaced
 /// whatever it is, and no link is followed.
 void write_own_file(const std::string& path, const std::string& content);
+/// Of such a file that grows: writes from a byte of it on, and ends it behind the text. A kill may
+/// leave a part of the text.
+void write_own_tail(const std::string& path, std::uint64_t from, std::string_view text);
 /// As read_file(), but a link is refused.
 std::string read_own_file(const std::string& path, std::uint64_t most_bytes = most_settings_bytes);
 

@@ -34,4 +34,34 @@ class AreaSums {
   Eigen::ArrayXXd sums_;  // up to each cell, with a margin of zeros
 };
 
+// Larger cells: squares of `by` cells, without what is left over at the upper edges.
+
+/// Means of the known cells of each square.
+inline HeightMap coarser(const HeightMap& map, Eigen::Index by) {
+  if (by == 1) return map;
+  HeightMap coarse = map;
+  coarse.cell_size = map.cell_size * static_cast<double>(by);
+  coarse.z.resize(map.z.rows() / by, map.z.cols() / by);
+  for (Eigen::Index row = 0; row < coarse.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < coarse.z.cols(); ++col) {
+      const auto cells = map.z.block(row * by, col * by, by, by);
+      const auto known = cells.isFinite();
+      coarse.z(row, col) = known.select(cells, 0.0).sum() / static_cast<double>(known.count());
+    }
+  }
+  return coarse;
+}
+
+/// The cells in the middle of the squares.
+template <typename Layer>
+typename Layer::PlainObject middle_cells(const Layer& layer, Eigen::Index by) {
+  typename Layer::PlainObject coarse(layer.rows() / by, layer.cols() / by);
+  for (Eigen::Index row = 0; row < coarse.rows(); ++row) {
+    for (Eigen::Index col = 0; col < coarse.cols(); ++col) {
+      coarse(row, col) = layer(row * by + by / 2, col * by + by / 2);
+    }
+  }
+  return coarse;
+}
+
 }  // namespace excavplan

@@ -10,6 +10,7 @@
 #include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "job/step_json.hpp"
 
 namespace excavplan {
 namespace {
@@ -20,50 +21,9 @@ constexpr const char* format = "excavplan job";
 constexpr int version = 1;
 constexpr int numbers_of_pose = 6;
 
-template <typename Value, std::size_t size>
-Value of_word(JsonObject& object, const char* key, const std::array<Value, size>& values) {
-  const std::string word = object.text(key);
-  for (const Value value : values) {
-    if (word == name(value)) return value;
-  }
-  object.fail(key, "is not a known word");
-}
-
 constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,
                                DigPhase::scoop,    DigPhase::lift,      DigPhase::swing,
                                DigPhase::dump,     DigPhase::back};
-constexpr std::array actions = {JobAction::dig,  JobAction::finish, JobAction::move,
-                                JobAction::scan, JobAction::wait,   JobAction::stop};
-
-constexpr std::array codes = {
-#define EXCAVPLAN_WARNING(code, trust) WarningCode::code,
-#include <excavplan/base/warning_codes.def>
-};
-
-Json warnings_json(const std::vector<Warning>& warnings) {
-  Json list = Json::array();
-  for (const Warning& each : warnings) {
-    list.push_back({{"code", code_text(each.code)},
-                    {"message", each.message},
-                    {"ends_trust", each.ends_trust}});
-  }
-  return list;
-}
-
-std::vector<Warning> read_warnings(std::vector<JsonObject> list) {
-  std::vector<Warning> warnings;
-  for (JsonObject& each : list) {
-    const std::string code = each.text("code");
-    const auto known = std::find_if(codes.begin(), codes.end(), [&](WarningCode candidate) {
-      return code_text(candidate) == code;
-    });
-    if (known == codes.end()) each.fail("code", "is no code of a warning");
-    warnings.emplace_back(*known, each.text("message"), each.flag("ends_trust"));
-    each.done();
-  }
-  return warnings;
-}
-
 Json poses_json(const std::vector<DigPose>& poses) {
   Json list = Json::array();
   for (const DigPose& pose : poses) {
@@ -141,7 +101,7 @@ Json step_json(const JobStep& step) {
                {"energy_interval_j", step.predicted.energy_interval},
                {"time_s", step.predicted.time},
                {"trustworthy", step.trustworthy},
-               {"warnings", warnings_json(step.warnings)},
+               {"warnings", kept_warnings_json(step.warnings)},
                {"reason", step.reason}};
   const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;
   if (digs) json["path"] = path_json(step.path);
@@ -168,7 +128,7 @@ JobStep read_step(JsonObject object) {
   const std::vector<double> energies = object.numbers("energy_interval_j", 2);
   foretold.energy_interval = {energies[0], energies[1]};
   step.trustworthy = object.flag("trustworthy");
-  step.warnings = read_warnings(object.objects("warnings"));
+  step.warnings = read_kept_warnings(object.objects("warnings"));
   step.reason = object.text("reason");
   if (object.has("path")) step.path = read_path(object.object("path"));
   object.done();

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_ground.hpp"
+#include "job/job_log.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
@@ -113,7 +114,8 @@ struct SiteJob::State {
   void end_dig(const JobStep& step, const StepReport& report);
   void take_scan(const StepReport& report);
   void save();
-  void save_changed(const JobRecord& before);
+  void save_changed(const JobRecord& before, const JobStep& step, const StepReport& report);
+  void log_from(const GroundState& of_first);
   void restore();
   std::string first_file() const { return folder + "/job-first-ground.tif"; }
 
@@ -125,6 +127,7 @@ struct SiteJob::State {
   JobFrame frame;
   std::vector<JobStation> stations;
   JobRecord record;
+  std::optional<JobLog> log;
 };
 
 JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
@@ -324,13 +327,27 @@ void SiteJob::State::save() {
   save_record(folder, record);
 }
 
-void SiteJob::State::save_changed(const JobRecord& before) {
+void SiteJob::State::log_from(const GroundState& of_first) {
+  const double volume = record.progress.design_volume;
+  log.emplace(folder, history_start(settings.design, map.target, of_first, volume));
+}
+
+/// The log is never behind the record.
+void SiteJob::State::save_changed(const JobRecord& before, const JobStep& step,
+                                  const StepReport& report) {
+  JobEvent event = timed(event_of(step, report), log->history());
+  if (report.scan) {
+    event.warnings.insert(event.warnings.end(), ground.warnings().begin(), ground.warnings().end());
+  }
+  event.left_volume = progress().left_volume;
+  log->append(std::move(event), {ground.expected().surface(), ground.site().ground().seen}, record);
   save_earlier_record(folder, before);
   save();
 }
 
 /// The ground of the record.
 void SiteJob::State::restore() {
+  log->cut(record);
   ground.load(record.site_updates);
   for (const JobStep& dig : record.unseen) ground.expect(dig, record.learning.height_bias.mean);
 }
@@ -356,6 +373,8 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
   record.site_updates = state->ground.site().updates();
   state->ground.save(record.site_updates);
   record.progress.design_volume = state->progress().left_volume;
+  state->log_from(state->ground.site().ground());
+  state->log->begin();
   state->save();
   return SiteJob(std::move(state));
 }
@@ -364,8 +383,11 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
   require_job_settings(settings);
   auto state = std::make_unique<State>(folder, std::move(settings));
   state->record = load_record(folder);
-  state->first = load_ground(state->first_file()).terrain;
+  const GroundState first = load_ground(state->first_file());
+  state->first = first.terrain;
   state->look_at_design();
+  state->log_from(first);
+  state->log->resume(state->record);
   state->restore();
   return SiteJob(std::move(state));
 }
@@ -384,7 +406,7 @@ void SiteJob::done(long long step, const StepReport& report) {
   if (!present || present->id != step || present->what == JobAction::stop) return;
   const JobRecord before = state_->record;
   state_->end_step(report);
-  state_->save_changed(before);
+  state_->save_changed(before, *before.present, report);
 }
 
 void SiteJob::look(const Scan& scan, double time) {
@@ -399,7 +421,9 @@ void SiteJob::look(const Scan& scan, double time) {
     record.present.reset();
     record.planned.reset();
   }
-  state_->save_changed(before);
+  JobStep unasked = state_->step_of(JobAction::scan);
+  unasked.id = 0;
+  state_->save_changed(before, unasked, report);
 }
 
 void SiteJob::undo() {
@@ -410,6 +434,8 @@ void SiteJob::undo() {
 const std::vector<Warning>& SiteJob::scan_warnings() const { return state_->ground.warnings(); }
 
 JobProgress SiteJob::progress() const { return state_->progress(); }
+
+const JobHistory& SiteJob::history() const { return state_->log->history(); }
 
 const Terrain& SiteJob::ground() const { return state_->ground.expected(); }
 

@@ -56,6 +56,7 @@ JobTrial run_trial(const HiddenSite& site, const Machine& machine, JobPlanner& p
     const auto told = std::chrono::steady_clock::now();
     planner.done(at.step.id, at.done.report);
     at.planning_time += seconds_since(told);
+    at.site = &truth;
     count(at, trial);
     if (options.each) options.each(at);
     if (i + 1 >= options.most_steps) trial.reason = "too many steps";

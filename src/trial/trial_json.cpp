@@ -5,24 +5,12 @@
 #include <cmath>
 
 #include "base/json.hpp"
+#include "job/step_json.hpp"
 
 namespace excavplan {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Bases of a log are without units in their keys, as other programs read them.
-Json base_json(const BasePose& base) {
-  return {{"x", base.x}, {"y", base.y}, {"z", base.z}, {"heading_rad", base.heading}};
-}
-
-Json foretold_json(const ForetoldStep& foretold) {
-  return {{"payload_kg", foretold.payload_mass},
-          {"energy_j", foretold.energy},
-          {"time_s", foretold.time},
-          {"payload_kg_interval", foretold.payload_interval},
-          {"energy_j_interval", foretold.energy_interval}};
-}
 
 Json dig_json(const TrialStep& at) {
   Json line = {{"type", "dig"},
@@ -31,11 +19,12 @@ Json dig_json(const TrialStep& at) {
                {"payload_kg", at.done.report.payload_mass.value_or(0.0)},
                {"payload_true_kg", at.done.payload_mass},
                {"stall", at.done.stall.has_value()},
-               {"base", base_json(at.step.base)},
+               {"base", log_base_json(at.step.base)},
                {"plan_s", at.planning_time},
                {"pass", at.step.what == JobAction::finish ? "finish" : "bulk"}};
   if (at.done.stall) line["stall_cause"] = name(at.done.stall->cause);
-  if (at.step.predicted.payload_mass > 0.0) line["predicted"] = foretold_json(at.step.predicted);
+  if (at.step.predicted.payload_mass > 0.0)
+    line["predicted"] = log_foretold_json(at.step.predicted);
   if (at.step.truck) line["truck"] = *at.step.truck;
   line["lane_m"] = at.step.lane;
   line["swung_rad"] = at.step.swung;
@@ -52,7 +41,7 @@ Json line_of(const TrialStep& at) {
       return {{"type", "move"},
               {"time_s", at.done.time},
               {"energy_j", at.done.energy},
-              {"base", base_json(at.done.report.base.value_or(at.step.base))},
+              {"base", log_base_json(at.done.report.base.value_or(at.step.base))},
               {"plan_s", at.planning_time}};
     default:
       return {{"type", name(at.step.what)},

@@ -19,6 +19,7 @@
 #include "ground/grid_cells.hpp"
 #include "trial/dump_places.hpp"
 #include "trial/plan_polygon.hpp"
+#include "trial/seen_first.hpp"
 #include "trial/tracked_path.hpp"
 
 namespace excavplan {
@@ -98,15 +99,9 @@ struct TrueSite::State {
       : site(of), machine(std::move(digger)), options(std::move(how)), ground(of.ground) {
     density = mean_density(site);
     simulator = options.simulator.make(machine, site.soil, density);
-    seen_height = ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
-                                     std::numeric_limits<double>::quiet_NaN());
+    seen_at = seen_at_first(site, trial_begin);
     const HeightMap surface = ground.surface();
-    for_each_cell(seen_height, [&](Cell at) {
-      const double x = surface.x(at.col), y = surface.y(at.row);
-      const auto cell = cell_at(site.first_scan, x, y);
-      if (!cell || std::isnan(site.first_scan.z(cell->row, cell->col))) return;
-      seen_height(at.row, at.col) = surface.z(at.row, at.col);
-    });
+    seen_height = seen_at.isNaN().select(seen_at, surface.z);
     real = *site.known.job.start;
     real.z = height_under(real);
     known = real;
@@ -145,6 +140,7 @@ struct TrueSite::State {
     const auto rows = last->row - first->row + 1, cols = last->col - first->col + 1;
     seen_height.block(first->row, first->col, rows, cols) =
         surface.z.block(first->row, first->col, rows, cols);
+    seen_at.block(first->row, first->col, rows, cols).setConstant(time);
   }
 
   void require_reach(const JobStep& job, const Vector2d& at) const {
@@ -175,6 +171,7 @@ struct TrueSite::State {
   std::uint64_t step = 0;   ///< steps done
   std::uint64_t scans = 0;  ///< made
   SolidsLedger solids;
+  ArrayXXd seen_at;      ///< when a cell was last seen [s]; NaN: never
   ArrayXXd seen_height;  ///< of the true surface when a cell was last seen; NaN: never [m]
 };
 
@@ -316,6 +313,8 @@ const BasePose& TrueSite::known_base() const { return state_->known; }
 const BasePose& TrueSite::true_base() const { return state_->real; }
 double TrueSite::time() const { return state_->time; }
 const SolidsLedger& TrueSite::solids() const { return state_->solids; }
+
+const ArrayXXd& TrueSite::seen_at() const { return state_->seen_at; }
 
 double TrueSite::seen_share(const HeightMap& area) const {
   const double tolerance = state_->site.known.job.tolerance;

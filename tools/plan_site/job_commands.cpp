@@ -13,6 +13,7 @@
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "plan_site/job_lines.hpp"
+#include "report/job_report.hpp"
 #include "results/plan_results.hpp"
 
 namespace excavplan::tools {
@@ -165,9 +166,14 @@ Outcome work_scan(const JobInputs& inputs, Console& /*console*/) {
 }
 
 Outcome work_show(const JobInputs& inputs, Console& /*console*/) {
-  const SiteJob job = job_in(inputs.folder);
+  const JobSettings settings = load_order(inputs.folder);
+  const SiteJob job = SiteJob::resume(inputs.folder, settings);
   Outcome outcome;
   add_progress(job, outcome);
+  if (inputs.report) {
+    outcome.page = page_of(progress_report(job.progress(), {job.history(), settings.site.machine}),
+                           *inputs.report);
+  }
   return outcome;
 }
 

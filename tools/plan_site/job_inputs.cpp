@@ -48,6 +48,8 @@ void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) 
                    "it works (default: before the trench); of done after a move, if not where it "
                    "was sent [m,m,rad]");
   });
+  arguments.only_if({is({"show"}), "it is of plan-site show"},
+                    [&] { arguments.report(inputs.report); });
   arguments.only_if({is({"done"}), "it is of plan-site done"}, [&] {
     arguments.option("step", inputs.step, "the step that was done, as next names it");
     arguments.option("payload-mass", inputs.payload_mass, Quantity::mass,

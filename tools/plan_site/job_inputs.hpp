@@ -16,7 +16,7 @@ struct JobInputs {
   SiteScanInputs scan;
   std::optional<int> step;
   std::optional<double> payload_mass, energy;
-  std::optional<std::string> loads, base;
+  std::optional<std::string> loads, base, report;
   bool stalled = false;
 };
 

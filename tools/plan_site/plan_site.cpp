@@ -17,7 +17,8 @@ const About about = {
       "a trench from 3 m before the machine, its soil to the left"},
      {"plan-site next job --json", "the next dig, move or scan, with the file of its trajectory"},
      {"plan-site done job --step 7 --payload-mass 540 --energy-kj 160 --scan after.tif",
-      "it was done, and this is the ground now"}},
+      "it was done, and this is the ground now"},
+     {"plan-site show job --report job.html", "a page of all that was done"}},
     true,
     false,
     "10 next: the job is finished; 11 next: it is stuck, or nothing is safe"};

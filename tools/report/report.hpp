@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "frame/page.hpp"
+#include "report/report_job.hpp"
 #include "report/report_scene.hpp"
 
 /// @file
@@ -20,8 +22,10 @@ struct Report {
   std::string plot;          ///< SVG; on paper and where nothing can be drawn in three dimensions
   bool plot_always = false;  ///< the plot shows what nothing else on the page does
   ReportScene scene = {};
-  std::string fault = {};  ///< "The dig stalled."; empty if nothing failed
-  std::string note = {};   ///< what ground and loads of the scene are
+  std::optional<ReportJob> job = {};  ///< that the page is about, in place of a scene
+  std::string state = {};             ///< "Finished."; empty: as the run says
+  std::string fault = {};             ///< "The dig stalled."; empty if nothing failed
+  std::string note = {};              ///< what ground and loads of the scene are
 };
 
 /// One page of HTML with all that it needs inside: it loads nothing and runs no script but its own,

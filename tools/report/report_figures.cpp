@@ -23,7 +23,8 @@ struct Unit {
 };
 
 /// The longest first.
-constexpr std::array<Unit, 21> units = {{{"_kg_per_kj", "kg/kJ"},
+constexpr std::array<Unit, 24> units = {{{"_kj_per_design_m3", "kJ/m³"},
+                                         {"_kg_per_kj", "kg/kJ"},
                                          {"_kg_per_m3", "kg/m³"},
                                          {"_rad_per_s", "rad/s"},
                                          {"_m3_per_s", "m³/s"},
@@ -31,6 +32,7 @@ constexpr std::array<Unit, 21> units = {{{"_kg_per_kj", "kg/kJ"},
                                          {"_percent", "%"},
                                          {"_kn_m", "kN m"},
                                          {"_n_m", "N m"},
+                                         {"_min", "min"},
                                          {"_rad", "rad"},
                                          {"_deg", "°"},
                                          {"_m3", "m³"},
@@ -42,6 +44,7 @@ constexpr std::array<Unit, 21> units = {{{"_kg_per_kj", "kg/kJ"},
                                          {"_kw", "kW"},
                                          {"_nm", "N m"},
                                          {"_w", "W"},
+                                         {"_l", "l"},
                                          {"_s", "s"},
                                          {"_m", "m"}}};
 

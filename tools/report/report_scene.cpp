@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/base64.hpp"
 #include "base/text.hpp"
+#include "ground/window.hpp"
 #include "planning/planned_digs.hpp"
+#include "report/report_parts.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -16,12 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // ---- Numbers ----------------------------------------------------------------------------------
-
-/// Rounded to 1e-6, far below what can be seen; null if not finite.
-Json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::round(value * 1e6) / 1e6 + 0.0;  // no minus zero
-}
 
 template <typename Items, typename Value>
 Json numbers(const Items& items, const Value& value) {
@@ -47,60 +44,10 @@ Json phase_names(const Items& items) {
   return list;
 }
 
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      word = word << 8 | (at + i < bytes.size() ? bytes[at + i] : 0U);
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      text += at + i > bytes.size() ? '=' : digits[word >> (18 - 6 * i) & 63U];
-    }
-  }
-  return text;
-}
-
 // ---- Ground -----------------------------------------------------------------------------------
 
-constexpr Eigen::Index most_cells = 250000;  // ours
-constexpr std::uint16_t unknown_height = 65535;
-constexpr std::uint8_t no_zone = 255;
-
-/// Cells of a drawn one, along x and y.
-Eigen::Index coarsening(const HeightMap& map) {
-  Eigen::Index by = 1;
-  while ((map.z.rows() / by) * (map.z.cols() / by) > most_cells) ++by;
-  return by;
-}
-
-/// Means of the known cells of squares of `by` cells.
-HeightMap coarsened(const HeightMap& map, Eigen::Index by) {
-  if (by == 1) return map;
-  HeightMap coarse = map;
-  coarse.cell_size = map.cell_size * static_cast<double>(by);
-  coarse.z.resize(map.z.rows() / by, map.z.cols() / by);
-  for (Eigen::Index row = 0; row < coarse.z.rows(); ++row) {
-    for (Eigen::Index col = 0; col < coarse.z.cols(); ++col) {
-      const auto cells = map.z.block(row * by, col * by, by, by);
-      const auto known = cells.isFinite();
-      coarse.z(row, col) = known.select(cells, 0.0).sum() / static_cast<double>(known.count());
-    }
-  }
-  return coarse;
-}
-
-/// The middle cells of the same squares.
-Eigen::ArrayXXi coarsened(const Eigen::ArrayXXi& zone, Eigen::Index by) {
-  Eigen::ArrayXXi coarse(zone.rows() / by, zone.cols() / by);
-  for (Eigen::Index row = 0; row < coarse.rows(); ++row) {
-    for (Eigen::Index col = 0; col < coarse.cols(); ++col) {
-      coarse(row, col) = zone(row * by + by / 2, col * by + by / 2);
-    }
-  }
-  return coarse;
-}
+constexpr std::uint16_t unknown_code = 65535;
+constexpr int no_zone = 255;
 
 /// Steps of 0.1 mm, or as fine as 16 bits allow.
 Json heights_json(const HeightMap& map) {
@@ -108,35 +55,35 @@ Json heights_json(const HeightMap& map) {
   const double highest = known.select(map.z, -std::numeric_limits<double>::infinity()).maxCoeff();
   const double lowest = known.select(map.z, std::numeric_limits<double>::infinity()).minCoeff();
   const double base = known.any() ? lowest : 0.0;
-  const double step = known.any() ? std::max(1e-4, (highest - lowest) / (unknown_height - 1)) : 1.0;
-  std::vector<std::uint8_t> bytes;
+  const double step = known.any() ? std::max(1e-4, (highest - lowest) / (unknown_code - 1)) : 1.0;
+  std::string bytes;
   for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
     for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
       const double z = map.z(row, col);
       const auto code = std::isfinite(z)
                             ? static_cast<std::uint16_t>(std::lround((z - base) / step))
-                            : unknown_height;
-      bytes.push_back(static_cast<std::uint8_t>(code & 255U));
-      bytes.push_back(static_cast<std::uint8_t>(code >> 8U));
+                            : unknown_code;
+      bytes.push_back(static_cast<char>(code & 255U));
+      bytes.push_back(static_cast<char>(code >> 8U));
     }
   }
-  return {{"base_m", base}, {"step_m", step}, {"codes", base64(bytes)}};
+  return {{"base_m", base}, {"step_m", step}, {"codes", base64_of(bytes)}};
 }
 
 std::string zone_codes(const Eigen::ArrayXXi& zone) {
-  std::vector<std::uint8_t> bytes;
+  std::string bytes;
   for (Eigen::Index row = 0; row < zone.rows(); ++row) {
     for (Eigen::Index col = 0; col < zone.cols(); ++col) {
       const int index = zone(row, col);
-      bytes.push_back(index < 0 || index >= no_zone ? no_zone : static_cast<std::uint8_t>(index));
+      bytes.push_back(static_cast<char>(index < 0 || index >= no_zone ? no_zone : index));
     }
   }
-  return base64(bytes);
+  return base64_of(bytes);
 }
 
 Json area_json(const ReportArea& area) {
   const HeightMap& first = area.states.front().map;
-  const Eigen::Index by = coarsening(first);
+  const Eigen::Index by = coarsening(first.z.rows(), first.z.cols());
   Json json = {{"origin_m", {first.origin.x(), first.origin.y()}},
                {"cell_m", first.cell_size * static_cast<double>(by)},
                {"surveyed_cell_m", first.cell_size},
@@ -144,11 +91,11 @@ Json area_json(const ReportArea& area) {
                {"cols", first.z.cols() / by},
                {"states", Json::array()}};
   for (const ShownGround& state : area.states) {
-    Json heights = heights_json(coarsened(state.map, by));
+    Json heights = heights_json(coarser(state.map, by));
     heights["name"] = state.name;
     json["states"].push_back(std::move(heights));
   }
-  if (area.zone.size() > 0) json["zone"] = zone_codes(coarsened(area.zone, by));
+  if (area.zone.size() > 0) json["zone"] = zone_codes(middle_cells(area.zone, by));
   return json;
 }
 
@@ -158,54 +105,6 @@ Json zone_json(const ChangeZone& zone) {
           {"volume_m3", std::abs(zone.volume.value)},
           {"volume", readable(std::abs(zone.volume.value), zone.volume.sd) + " m³"},
           {"extent_m", {extent.x_min, extent.y_min, extent.x_max, extent.y_max}}};
-}
-
-// ---- Machine ----------------------------------------------------------------------------------
-
-Json pin_json(const PolarPin& pin) { return {number(pin.distance), number(pin.angle)}; }
-
-Json cylinder_json(const Cylinder& cylinder) {
-  const CylinderGeometry& geometry = cylinder.geometry();
-  Json json = {{"count", geometry.count},
-               {"foot", pin_json(geometry.foot)},
-               {"shortest_m", number(cylinder.shortest())}};
-  if (const auto* pin = std::get_if<PolarPin>(&geometry.rod)) {
-    json["rod"] = pin_json(*pin);
-    return json;
-  }
-  const auto& bars = std::get<FourBar>(geometry.rod);
-  const auto bar = [](const Bar& each) -> Json {
-    return {{"pin", pin_json(each.pin)}, {"length_m", number(each.length)}};
-  };
-  json["rocker"] = bar(bars.rocker);
-  json["link"] = bar(bars.link);
-  return json;
-}
-
-Json machine_json(const Machine& machine) {
-  const Bucket& bucket = machine.bucket;
-  Json json = {{"name", machine.name},
-               {"boom_pin_m", {machine.boom_pin.x(), machine.boom_pin.y()}},
-               {"lengths_m", {machine.boom_length, machine.arm_length, machine.bucket_length}},
-               {"track_front_m", machine.track_front},
-               {"torque_limits_kn_m",
-                numbers(machine.limits, [](const auto& limit) { return limit.torque / 1000.0; })},
-               {"profile_m", Json::array()},
-               {"width_m", bucket.width_outside},
-               {"width_inside_m", bucket.width_inside}};
-  for (const Eigen::Vector2d& corner : bucket.profile) {
-    json["profile_m"].push_back({number(corner.x()), number(corner.y())});
-  }
-  if (bucket.teeth) {
-    json["teeth"] = {{"count", bucket.teeth->count},
-                     {"width_m", bucket.teeth->width},
-                     {"length_m", bucket.teeth->length}};
-  }
-  if (!machine.cylinders) return json;
-  for (const Cylinder& cylinder : *machine.cylinders) {
-    json["cylinders"].push_back(cylinder_json(cylinder));
-  }
-  return json;
 }
 
 // ---- Digs -------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <excavplan/ground/map_files.hpp>
+#include <excavplan/trial/trial_history.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -10,6 +11,7 @@
 #include "frame/tool.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
+#include "report/job_report.hpp"
 #include "simulate_site/trial_planner.hpp"
 #include "trial/trial_json.hpp"
 
@@ -25,6 +27,7 @@ const About about = {
     {{"simulate-site sites/T00", "the job by the default planner"},
      {"simulate-site sites/T00 --planner operator --log t.jsonl --ground-after t.asc",
       "by a plain policy, with its log and the ground at the end"},
+     {"simulate-site sites/T00 --report t.html", "with a page that plays it"},
      {"simulate-site sites/T00 --bound", "what the job costs at its best: R and B"}},
     false};
 
@@ -37,6 +40,7 @@ struct Inputs {
   bool bound = false;
   std::optional<std::string> log;
   std::optional<std::string> ground_after;
+  std::optional<std::string> report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -50,6 +54,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
     arguments.output("ground-after", inputs.ground_after,
                      "file to write the true ground at the end to, an ESRI ASCII grid");
     arguments.require_ending({".asc"});
+    arguments.report(inputs.report);
   });
   declare_simulator(arguments, inputs.simulator);
   arguments.only_if({[&inputs] { return inputs.bound; }, "only --bound searches in threads"}, [&] {
@@ -112,13 +117,21 @@ Outcome work(const Inputs& inputs, Console& console) {
   TrialOptions options;
   options.truth.simulator = simulator_of(inputs.simulator, console);
   options.truth.seed = inputs.seed;
-  options.each = [&](const TrialStep& step) { log += log_lines(step); };
+  std::optional<TrialRecorder> recorder;
+  if (inputs.report) recorder.emplace(site);
+  options.each = [&](const TrialStep& step) {
+    log += log_lines(step);
+    if (recorder) recorder->add(step);
+  };
   const JobTrial trial = run_trial(site, machine, *planner, options);
   if (inputs.log) write_file(*inputs.log, log + log_end(trial));
   if (inputs.ground_after) write_ground(*inputs.ground_after, trial.after.surface());
   Outcome outcome;
   outcome.json = trial_json(trial);
   outcome.lines = lines_of(trial);
+  if (recorder) {
+    outcome.page = page_of(trial_report(trial, {recorder->history(), machine}), *inputs.report);
+  }
   return outcome;
 }
 

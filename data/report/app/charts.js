@@ -1,108 +1,34 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Charts over time.
-
-const chartsOf = () => {
-  const joints = (lists, factor) =>
-    ["boom", "arm", "bucket"].map((name, i) => ({
-      name,
-      colour: name,
-      values: lists[i].map((v) => v * factor),
-    }));
-  const list = [
-    {
-      title: "Joint angles",
-      unit: "°",
-      digits: 1,
-      times: dig.time_s,
-      series: joints(dig.joints_rad, degrees),
-    },
-    {
-      title: "Joint rates",
-      unit: "°/s",
-      digits: 1,
-      times: dig.time_s,
-      series: joints(dig.rates_rad_per_s, degrees),
-    },
-  ];
-  const loads = dig.loads;
-  if (!loads) return list;
-  const size = loads.soil_x_kn.map((x, i) => Math.hypot(x, loads.soil_z_kn[i]));
-  list.push(
-    {
-      title: "Joint torques",
-      unit: "kN m",
-      digits: 1,
-      times: loads.time_s,
-      series: joints(loads.torque_kn_m, 1),
-    },
-    {
-      title: "Force of the soil on the bucket",
-      unit: "kN",
-      digits: 1,
-      times: loads.time_s,
-      series: [
-        { name: "size", colour: "total", values: size },
-        { name: "forward", colour: "boom", values: loads.soil_x_kn },
-        { name: "up", colour: "arm", values: loads.soil_z_kn },
-      ],
-    },
-    {
-      title: "Power of the joints",
-      unit: "kW",
-      digits: 1,
-      times: loads.time_s,
-      series: [{ name: "power", colour: "total", values: loads.power_kw }],
-    },
-    {
-      title: "Energy of the dig so far",
-      stays: true,
-      unit: "kJ",
-      digits: 1,
-      times: loads.energy_time_s,
-      series: [{ name: "energy", colour: "total", values: loads.energy_kj }],
-    },
-    {
-      title: "Soil in the bucket",
-      stays: true,
-      unit: "m³",
-      digits: 3,
-      times: loads.time_s,
-      series: [{ name: "loose volume", colour: "total", values: loads.fill_m3 }],
-    },
-  );
-  return list;
-};
-
-const makeCharts = (timeOf, setTime) => {
+// Charts over time, or over steps: what they show, up to where, with which unit, whether in
+// whole numbers; bands and marks behind them; the time now, and how to set it.
+const makeCharts = ({ listed, end, unit, whole, bands, marks, now, set }) => {
   const uPlot = globalThis.excavplanVendor.uPlot;
   let charts = [];
-
-  const phases = () => {
-    const list = [];
-    dig.phase.forEach((phase, i) => {
-      if (!list.length || list[list.length - 1].phase !== phase)
-        list.push({ phase, from: dig.time_s[Math.max(0, i - 1)] });
-      list[list.length - 1].to = dig.time_s[i];
-    });
-    return list;
-  };
 
   const drawBands = (plot) => {
     const { ctx, bbox } = plot;
     ctx.save();
     ctx.fillStyle = theme().band;
-    phases().forEach(({ from, to }, i) => {
-      if (i % 2 === 0) return;
+    bands().forEach(([from, to]) => {
       const x0 = plot.valToPos(from, "x", true);
       ctx.fillRect(x0, bbox.top, plot.valToPos(to, "x", true) - x0, bbox.height);
     });
+    for (const [at, colour] of marks()) {
+      const x = Math.round(plot.valToPos(at, "x", true)) + 0.5;
+      ctx.strokeStyle = theme()[colour];
+      ctx.setLineDash([4, 4]);
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+    }
     ctx.restore();
   };
   const drawTime = (plot) => {
     const { ctx, bbox } = plot;
-    const x = Math.round(plot.valToPos(timeOf(), "x", true)) + 0.5;
+    const x = Math.round(plot.valToPos(now(), "x", true)) + 0.5;
     ctx.save();
     ctx.strokeStyle = theme().ink;
     ctx.lineWidth = Math.max(1, devicePixelRatio || 1);
@@ -133,26 +59,35 @@ const makeCharts = (timeOf, setTime) => {
           points: { show: false },
           drag: { setScale: false, x: false, y: false },
         },
-        scales: { x: { time: false, range: () => [0, dig.time_s[dig.time_s.length - 1]] } },
+        scales: {
+          x: { time: false, range: () => [0, end()] },
+          ...(chart.zero ? { y: { range: (_, low, high) => [0, 1.05 * Math.max(high, 1e-9)] } } : {}),
+        },
         axes: [
-          { ...axis, size: 26, values: (_, list) => list.map((t) => `${t} s`) },
+          {
+            ...axis,
+            size: 26,
+            ...(whole ? { incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] } : {}),
+            values: (_, list) => list.map((t) => `${t}${unit}`),
+          },
           { ...axis, size: 44 },
         ],
         series: [
           {},
           ...chart.series.map((series) => ({
             stroke: colours[series.colour],
-            width: 1.8,
-            points: { show: false },
+            width: series.dots ? 0 : series.edge ? 0.6 : 1.8,
+            points: { show: Boolean(series.dots), size: 6, fill: colours[series.colour] },
           })),
         ],
+        ...(chart.between ? { bands: [{ series: chart.between, fill: colours.interval }] } : {}),
         hooks: { drawClear: [drawBands], draw: [drawTime] },
       },
       [chart.times, ...chart.series.map((series) => series.values)],
       node,
     );
     const take = (event) =>
-      setTime(plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, "x"));
+      set(plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, "x"));
     plot.over.addEventListener("pointerdown", take);
     plot.over.addEventListener("pointermove", (event) => {
       if (event.buttons) take(event);
@@ -165,12 +100,13 @@ const makeCharts = (timeOf, setTime) => {
     const parent = element("charts");
     for (const { plot } of charts) plot.destroy();
     parent.replaceChildren();
-    charts = chartsOf().map((chart) => {
-      const card = htmlElement("div", { className: "chart" }, parent);
+    charts = listed().map((chart) => {
+      const card = htmlElement("div", { className: chart.wide ? "chart wide" : "chart" }, parent);
       const title = htmlElement("h3", { textContent: chart.title + " " }, card);
       htmlElement("small", { textContent: `[${chart.unit}]` }, title);
       const key = htmlElement("p", { className: "key" }, card);
       const texts = chart.series.map((series) => {
+        if (!series.name) return null;
         const item = htmlElement("span", {}, key);
         htmlElement("i", {}, item).style.background = `var(--${series.colour})`;
         item.append(series.name + " ");
@@ -186,12 +122,13 @@ const makeCharts = (timeOf, setTime) => {
     for (const chart of charts) {
       chart.plot.redraw(false, false);
       chart.series.forEach((series, i) => {
-        const time = timeOf();
+        if (!chart.texts[i]) return;
+        const time = now();
         const last = chart.times[chart.times.length - 1];
         const beyond = !chart.stays && (time > last + 0.2 || time < chart.times[0] - 0.2);
-        chart.texts[i].textContent = beyond
-          ? "–"
-          : signed(valueAt(chart.times, series.values, time), chart.digits);
+        const value = series.at ? series.at(time) : valueAt(chart.times, series.values, time);
+        chart.texts[i].textContent =
+          beyond || value === null || Number.isNaN(value) ? "–" : signed(value, chart.digits);
       });
     }
   };

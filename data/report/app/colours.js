@@ -16,18 +16,16 @@ const fell = ["#f6d9cb", "#f4a582", "#d6604d", "#b2182b", "#67001f"].map(rgb);
 const rose = ["#d6e7f1", "#92c5de", "#4393c3", "#2166ac", "#053061"].map(rgb);
 const changeBounds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
 
-// Of all states: the heights but for outliers, such as walls and masts beside the soil, and the
-// bounds of the bands of change.
-const range = (() => {
+// Of heights but for outliers, such as walls and masts beside the soil, and the bounds of the bands
+// of change: of states of the ground, each with that before it.
+const rangeOf = (pairs) => {
   const heights = [];
   let change = 0;
-  for (const area of areas) {
-    for (const z of area.states) {
-      for (let i = 0; i < z.length; ++i) {
-        if (Number.isNaN(z[i])) continue;
-        heights.push(z[i]);
-        change = Math.max(change, Math.abs(z[i] - area.states[0][i]) || 0);
-      }
+  for (const [z, before] of pairs) {
+    for (let i = 0; i < z.length; ++i) {
+      if (Number.isNaN(z[i])) continue;
+      heights.push(z[i]);
+      change = Math.max(change, Math.abs(z[i] - before[i]) || 0);
     }
   }
   const sorted = Float64Array.from(heights).sort();
@@ -36,12 +34,12 @@ const range = (() => {
   const clipped = highest - lowest > 2 * (high - low) && high - low > 0.2;
   const bands = changeBounds.filter((bound, i) => i === 0 || bound < change);
   return { low: clipped ? low : lowest, high: clipped ? high : highest, clipped, bands };
-})();
+};
 
-const heightColour = (z) =>
+const heightColour = (range, z) =>
   mix(soilRamp, range.high - range.low < 1e-3 ? 0.5 : (z - range.low) / (range.high - range.low));
 // Bands of 1, 2, 5, 10 cm and so on, so that centimetres show beside decimetres.
-const changeColour = (change) => {
+const changeColour = (range, change) => {
   const band = range.bands.filter((bound) => Math.abs(change) >= bound).length;
   if (!(band > 0)) return still;
   return mix(
@@ -51,3 +49,14 @@ const changeColour = (change) => {
 };
 
 const css = (colour) => `rgb(${colour.map((value) => Math.round(255 * value)).join(",")})`;
+
+// Of ground over its design: within the tolerance, then to 2, 4, 8 times of it and beyond.
+const errorBounds = [1, 2, 4, 8];
+const within = rgb("#dfeadb");
+const errorColour = (tolerance, error) => {
+  if (Number.isNaN(error)) return still;
+  const band = errorBounds.filter((bound) => Math.abs(error) > bound * tolerance).length;
+  return band === 0 ? within : (error > 0 ? fell : rose)[band];
+};
+// From just now to long ago.
+const ageRamp = ["#f4e61e", "#5ec962", "#21908d", "#3b528b", "#440154"].map(rgb);

@@ -54,6 +54,8 @@ const light = {
   bucket: "#00795a",
   total: "#1d2024",
   band: "rgba(91,98,107,0.07)",
+  bad: "#a1221b",
+  interval: "rgba(0,114,178,0.16)",
 };
 const theme = () => {
   if (printing || !dark.matches) return light;
@@ -67,5 +69,7 @@ const theme = () => {
     bucket: "#42cda4",
     total: "#e7e5e0",
     band: "rgba(163,171,181,0.09)",
+    bad: "#ff9d92",
+    interval: "rgba(88,180,238,0.2)",
   };
 };

@@ -34,94 +34,23 @@ const makeSection = () => {
   const lay = () => {
     const box = extentOf();
     const width = Math.max(280, svg.parentElement.clientWidth - 2);
-    const left = 46;
-    const bottom = 38;
-    const scale = (width - left - 14) / (box.x1 - box.x0);
+    const scale = (width - margins.left - margins.right) / (box.x1 - box.x0);
     // Beside the view in three dimensions, as tall as that.
     const stage = element("stage");
     const beside =
       stage.clientWidth > 0 && stage.clientWidth < 0.8 * element("scene").clientWidth && !printing;
-    if (beside) box.z1 = Math.max(box.z1, box.z0 + (stage.clientHeight - bottom - 14) / scale);
-    const height = Math.round(scale * (box.z1 - box.z0) + bottom + 12);
-    const X = (x) => left + scale * (x - box.x0);
-    const Z = (z) => 12 + scale * (box.z1 - z);
-    svg.replaceChildren();
-    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    svg.style.height = `${height}px`;
-    const clip = svgElement("clipPath", { id: "inside" }, svgElement("defs", {}, svg));
-    svgElement(
-      "rect",
-      { x: left, y: 12, width: width - left - 14, height: height - bottom - 12 },
-      clip,
-    );
-    const xs = ticks(box.x0, box.x1, Math.min(12, width / 50));
-    const zs = ticks(box.z0, box.z1, Math.max(3, Math.min(9, height / 40)));
-    const line = (x0, y0, x1, y1) =>
-      svgElement("line", { x1: x0, y1: y0, x2: x1, y2: y1, stroke: "var(--line)" }, svg);
-    for (const x of xs.list) {
-      line(X(x), 12, X(x), height - bottom);
-      svgElement(
-        "text",
-        { x: X(x), y: height - bottom + 15, "text-anchor": "middle" },
-        svg,
-      ).textContent = signed(x, xs.digits);
-    }
-    for (const z of zs.list) {
-      line(left, Z(z), width - 14, Z(z));
-      svgElement("text", { x: left - 6, y: Z(z) + 4, "text-anchor": "end" }, svg).textContent =
-        signed(z, zs.digits);
-    }
-    svgElement(
-      "text",
-      { x: (left + width) / 2, y: height - 6, "text-anchor": "middle" },
-      svg,
-    ).textContent = "x, from the swing axis [m]";
-    svgElement(
-      "text",
-      {
-        x: 12,
-        y: 10 + (height - bottom) / 2,
-        "text-anchor": "middle",
-        transform: `rotate(-90 12 ${10 + (height - bottom) / 2})`,
-      },
-      svg,
-    ).textContent = "z [m]";
-    const inside = svgElement("g", { "clip-path": "url(#inside)" }, svg);
+    if (beside) box.z1 = Math.max(box.z1, box.z0 + (stage.clientHeight - margins.bottom - 14) / scale);
+    const { X, Z, inside } = layAxes(svg, box, {
+      width,
+      scaleX: scale,
+      scaleZ: scale,
+      id: "inside",
+      title: "x, from the swing axis [m]",
+    });
 
-    const soil = (state, fill, edge, thick) => {
-      const height0 = profileOf(state);
-      let stretch = [];
-      const close = () => {
-        if (stretch.length > 1) {
-          const top = stretch.map(([x, z]) => `${X(x).toFixed(1)},${Z(z).toFixed(1)}`).join(" ");
-          const base = Z(box.z0).toFixed(1);
-          svgElement(
-            "polygon",
-            {
-              points: `${X(stretch[0][0]).toFixed(1)},${base} ${top} ${X(stretch[stretch.length - 1][0]).toFixed(1)},${base}`,
-              fill: `var(--${fill})`,
-              stroke: "none",
-            },
-            inside,
-          );
-          svgElement(
-            "polyline",
-            { points: top, fill: "none", stroke: `var(--${edge})`, "stroke-width": thick },
-            inside,
-          );
-        }
-        stretch = [];
-      };
-      for (let i = 0; i <= 500; ++i) {
-        const x = box.x0 + ((box.x1 - box.x0) * i) / 500;
-        const z = height0(x);
-        if (Number.isNaN(z)) close();
-        else stretch.push([x, z]);
-      }
-      close();
-    };
-    if (areas.length) soil(0, "soil-before", "edge-before", 1.2);
-    if (lastState() > 0) soil(lastState(), "soil-after", "edge-after", 1.8);
+    const soil = (state, look) => drawSoil({ X, Z, inside }, box, profileOf(state), look);
+    if (areas.length) soil(0, soilLooks.before);
+    if (lastState() > 0) soil(lastState(), soilLooks.after);
 
     let stretch = [];
     const flush = (phase) => {
@@ -185,13 +114,8 @@ const makeSection = () => {
   const key = () => {
     const node = element("profile-key");
     node.replaceChildren();
-    const entry = (text, colour, area) => {
-      const item = htmlElement("span", {}, node);
-      const swatch = htmlElement("i", { className: area ? "area" : "" }, item);
-      swatch.style.background = `var(--${colour})`;
-      if (area) swatch.style.borderColor = `var(--${area})`;
-      item.append(text);
-    };
+    const entry = (text, colour, area) =>
+      addKey(node, text, `var(--${colour})`, area && `var(--${area})`);
     if (areas.length) entry(`ground ${areas[0].names[0]}`, "soil-before", "edge-before");
     if (lastState() > 0) entry(`ground ${areas[0].names[lastState()]}`, "soil-after", "edge-after");
     for (const phase of [...new Set(dig.phase)]) entry(`tip, ${phase}`, phase);

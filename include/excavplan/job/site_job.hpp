@@ -6,6 +6,7 @@
 #include <string>
 
 #include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_history.hpp>
 #include <excavplan/job/job_progress.hpp>
 #include <excavplan/job/job_settings.hpp>
 #include <excavplan/job/job_step.hpp>
@@ -51,6 +52,8 @@ class SiteJob : public JobPlanner {
   const std::vector<Warning>& scan_warnings() const;
 
   JobProgress progress() const;
+  /// What was done so far, with the ground as expected after each step.
+  const JobHistory& history() const;
   const Terrain& ground() const;  ///< as expected now: as scanned, and what was dug since
 
  private:

@@ -18,7 +18,8 @@ namespace excavplan {
 struct TrialStep {
   JobStep step;
   TrueStep done;
-  double planning_time = 0.0;  ///< that the planner took for it, by the clock [s]
+  double planning_time = 0.0;      ///< that the planner took for it, by the clock [s]
+  const TrueSite* site = nullptr;  ///< after it, for as long as TrialOptions::each is told
 };
 
 /// How a trial is run.

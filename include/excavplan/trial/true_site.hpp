@@ -82,6 +82,8 @@ class TrueSite {
   const BasePose& true_base() const;
   double time() const;  ///< since 1970-01-01 UTC [s]
   const SolidsLedger& solids() const;
+  /// When cells of ground() were last seen, since 1970-01-01 UTC [s]; NaN: never.
+  const Eigen::ArrayXXd& seen_at() const;
   /// Share of cells of an area that were seen since they last changed by more than the tolerance;
   /// of an empty area 0. @param area  NaN outside, on the cells of ground()
   double seen_share(const HeightMap& area) const;
