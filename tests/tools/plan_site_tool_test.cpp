@@ -9,6 +9,7 @@
 #include <excavplan/machine/trajectory.hpp>
 
 #include "support/plain_site_folder.hpp"
+#include "support/report_page.hpp"
 #include "support/tool_answers.hpp"
 
 namespace excavplan::test {
@@ -81,7 +82,18 @@ TEST_F(PlanSite, OrderStepAndReport) {
   EXPECT_EQ(after["scan_taken"], true);
   EXPECT_LT(number(after, "/progress/left_m3"), number(begun, "/progress/left_m3") - 0.1);
   EXPECT_EQ(after["progress"]["digs"], 1);
-  EXPECT_EQ(answer("plan-site", {"show", job()})["progress"], after["progress"]);
+  const std::string page = folder.file("job.html");
+  const json shown = answer("plan-site", {"show", job(), "--report", page});
+  EXPECT_EQ(shown["progress"], after["progress"]);
+  const json drawn = drawn_on(content_of(page));
+  ASSERT_EQ(drawn["events"].size(), 2U);
+  const json& event = drawn["events"][1];
+  EXPECT_EQ(event["payload_kg"], 400.0);
+  EXPECT_EQ(event["energy_j"], 140e3);
+  EXPECT_EQ(event["foretold_kg"], dig["predicted"]["payload_kg"]);
+  EXPECT_EQ(event["scanned"], true);
+  EXPECT_EQ(event["left_m3"], shown["progress"]["left_m3"]);
+  EXPECT_EQ(drawn["design_m3"], shown["progress"]["design_m3"]);
   EXPECT_EQ(answer("plan-site", {"undo", job()})["step"], dig["step"]);
   EXPECT_EQ(content_of(job() + "/job.json"), record);
 }

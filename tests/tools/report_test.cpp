@@ -98,6 +98,43 @@ TEST(ReportPage, RunsNoScriptOfItsTexts) {
             "</script>");
 }
 
+Report job_page(const std::string& text) {
+  JobHistory start;
+  start.before = flat_ground({0.0, 0.0, 8.0, 6.0}, 0.1);
+  start.target = flat_ground({0.0, 0.0, 8.0, 6.0}, 0.1, -0.3);
+  start.seen_at = start.before.z;
+  start.design.start = BasePose{2.0, 3.0, 0.0, 0.0};
+  start.design.keep_out = {{text, {{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}}}};
+  start.design.obstacles = {{text, {{5.0, 1.0}, {6.0, 1.0}, {6.0, 2.0}}, 1.0}};
+  JobRecorder recorder(start);
+  JobEvent event;
+  event.what = JobAction::dig;
+  event.reason = text;
+  event.warnings = {{WarningCode::units, text}};
+  JobHistory::Ground after = recorder.now();
+  after.surface.z(30, 40) = -0.2;
+  recorder.add(event, after);
+  Report report;
+  report.title = text;
+  report.state = text;
+  report.note = text;
+  report.job = ReportJob{recorder.history(), load_machine(find_data_file("machines/zx120.json"))};
+  return report;
+}
+
+TEST(ReportPage, OfAJobLoadsNothingAndRunsNoScriptOfItsTexts) {
+  const std::string text = own_text(
+      html_page(job_page("</script><img src=x onerror=alert(1)>{{data}}\x1b\xff"), plain_run()));
+  for (const char* foreign : {"<img", "\x1b", "\xff", "src=\"", "href=\"http", "@import", "url("}) {
+    EXPECT_FALSE(contains(text, foreign)) << foreign;
+  }
+  const json drawn = test::drawn_on(text);
+  EXPECT_EQ(drawn["design"]["keep_out"][0]["kind"].get<std::string>().substr(0, 9), "</script>");
+  EXPECT_EQ(drawn["events"].size(), 1U);
+  EXPECT_EQ(drawn["events"][0]["ground"]["rows"], 1);
+  EXPECT_TRUE(drawn["events"][0]["seen"].is_null());
+}
+
 TEST(ReportPage, ShowsValueErrorIntervalAndUnit) {
   const std::string tables = figure_tables(nlohmann::ordered_json::parse(R"({
       "tool": "t", "version": "1", "warnings": [],

@@ -18,6 +18,7 @@ const makeCharts = ({ listed, end, unit, whole, bands, marks, now, set }) => {
     for (const [at, colour] of marks()) {
       const x = Math.round(plot.valToPos(at, "x", true)) + 0.5;
       ctx.strokeStyle = theme()[colour];
+      ctx.globalAlpha = 0.5;
       ctx.setLineDash([4, 4]);
       ctx.beginPath();
       ctx.moveTo(x, bbox.top);
@@ -61,7 +62,7 @@ const makeCharts = ({ listed, end, unit, whole, bands, marks, now, set }) => {
         },
         scales: {
           x: { time: false, range: () => [0, end()] },
-          ...(chart.zero ? { y: { range: (_, low, high) => [0, 1.05 * Math.max(high, 1e-9)] } } : {}),
+          ...(chart.highest > 0 ? { y: { range: () => [0, 1.05 * chart.highest] } } : {}),
         },
         axes: [
           {

@@ -10,8 +10,8 @@ const jobCharts = () => {
     unit,
     digits,
     times: steps,
-    zero: true,
-    series: [{ name: "at this step", colour, values }],
+    highest: Math.max(...values.filter((value) => value !== null)),
+    series: [{ name: "at this step", colour, values, at: (step) => values[step] }],
   });
   const taken = volumesLeft.map((left) => scene.design_m3 - left);
   const least = 0.02 * scene.design_m3; // of less the cost says nothing
@@ -43,7 +43,11 @@ const jobCharts = () => {
     };
     return { values: all, at };
   };
-  const interval = (k) => of((event) => event.foretold_interval_kg && event.foretold_interval_kg[k]);
+  const interval = (k) =>
+    of((event) => event.foretold_interval_kg && event.foretold_interval_kg[k]);
+  const highest = Math.max(
+    ...digs.flatMap(([event]) => [event.payload_kg || 0, 1.3 * (event.foretold_kg || 0)]),
+  );
   const foretold = digs.some(([event]) => "foretold_kg" in event);
   list.push({
     title: "Payload of each dig",
@@ -52,7 +56,7 @@ const jobCharts = () => {
     times: digs.map(([, i]) => i),
     stays: true,
     wide: true,
-    zero: true,
+    highest, // of a wide interval not all
     between: foretold ? [4, 3] : null,
     series: [
       { name: "done", colour: "arm", dots: true, ...of((event) => event.payload_kg) },

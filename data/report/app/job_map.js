@@ -62,21 +62,39 @@ const makeMap = (moveCut) => {
   const X = (x) => scale * (x - extent.x0);
   const Y = (y) => scale * (extent.y0 + extent.height - y);
   const point = ([x, y]) => `${X(x).toFixed(1)},${Y(y).toFixed(1)}`;
-  const polygon = (corners, attributes) =>
-    svgElement("polygon", { points: corners.map(point).join(" "), fill: "none", ...attributes }, svg);
-  const text = (string, [x, y], attributes) => {
-    const node = svgElement("text", { x: X(x), y: Y(y), "text-anchor": "middle", ...attributes }, svg);
-    node.textContent = string;
+  const polygon = (corners, attributes) => {
+    const points = corners.map(point).join(" ");
+    svgElement("polygon", { points, fill: "none", ...attributes }, svg);
+  };
+  const segment = ([x1, y1], [x2, y2], attributes) =>
+    svgElement("line", { x1: X(x1), y1: Y(y1), x2: X(x2), y2: Y(y2), ...attributes }, svg);
+  const text = (string, x, y, attributes) => {
+    svgElement("text", { x, y, "text-anchor": "middle", ...attributes }, svg).textContent = string;
+  };
+  // Names of places, each below those that it would cover.
+  const names = [];
+  const name = (string, [x, y]) => {
+    const half = 3.6 * string.length;
+    const at = { x: Math.min(Math.max(X(x), half), scale * extent.width - half), y: Y(y) - 4 };
+    const covers = (other) =>
+      Math.abs(other.x - at.x) < half + other.half && Math.abs(other.y - at.y) < 14;
+    while (names.some(covers)) at.y += 3;
+    names.push({ ...at, half });
+    text(string, at.x, at.y, { class: "on-map" });
   };
   const footprint = (() => {
     const parts = [];
     const inside = (row, col) =>
-      row >= 0 && col >= 0 && row < grid.rows && col < grid.cols && !Number.isNaN(target[row * grid.cols + col]);
+      Math.min(row, col) >= 0 &&
+      row < grid.rows &&
+      col < grid.cols &&
+      !Number.isNaN(target[row * grid.cols + col]);
     for (let row = 0; row <= grid.rows; ++row)
       for (let col = 0; col <= grid.cols; ++col) {
         const [x, y] = [extent.x0 + col * grid.cell, extent.y0 + row * grid.cell];
-        if (inside(row, col) !== inside(row - 1, col)) parts.push([[x, y], [x + grid.cell, y]]);
-        if (inside(row, col) !== inside(row, col - 1)) parts.push([[x, y], [x, y + grid.cell]]);
+        const edge = (dx, dy) => parts.push([[x, y], [x + dx, y + dy]]);
+        if (inside(row, col) !== inside(row - 1, col)) edge(grid.cell, 0);
+        if (inside(row, col) !== inside(row, col - 1)) edge(0, grid.cell);
       }
     return parts;
   })();
@@ -92,23 +110,18 @@ const makeMap = (moveCut) => {
     const ys = ticks(extent.y0, extent.y0 + extent.height, Math.min(10, h / 45));
     for (const x of xs.list) {
       line(X(x), h, X(x), h - 5);
-      if (X(x) > 24 && X(x) < w - 24) text(signed(x, xs.digits), [x, extent.y0 + 9 / scale], {});
+      if (X(x) > 24 && X(x) < w - 24) text(signed(x, xs.digits), X(x), h - 9, {});
     }
     for (const y of ys.list) {
       line(0, Y(y), 5, Y(y));
       if (Y(y) > 14 && Y(y) < h - 26)
-        text(signed(y, ys.digits), [extent.x0 + 8 / scale, y - 4 / scale], { "text-anchor": "start" });
+        text(signed(y, ys.digits), 8, Y(y) + 4, { "text-anchor": "start" });
     }
   };
   const machineOn = (step) => {
     for (let i = 1; i <= step; ++i) {
       if (events[i - 1].what !== "move") continue;
-      const [from, to] = [baseAt(i - 1), baseAt(i)];
-      svgElement(
-        "line",
-        { x1: X(from[0]), y1: Y(from[1]), x2: X(to[0]), y2: Y(to[1]), stroke: "#3a3e44", "stroke-dasharray": "3 3" },
-        svg,
-      );
+      segment(baseAt(i - 1), baseAt(i), { stroke: "#3a3e44", "stroke-dasharray": "3 3" });
     }
     const [x, y, , heading] = baseAt(step);
     const [c, s] = [Math.cos(heading), Math.sin(heading)];
@@ -136,26 +149,15 @@ const makeMap = (moveCut) => {
   };
   const lay = (step, cut) => {
     svg.replaceChildren();
+    names.length = 0;
     const path = footprint.map((part) => `M${point(part[0])}L${point(part[1])}`).join("");
     svgElement("path", { d: path, stroke: "#00528c", "stroke-width": 1.4, fill: "none" }, svg);
-    for (const area of scene.design.dump_areas) {
-      polygon(area.polygon, { stroke: "#b36b00", "stroke-width": 1.6 });
-      text(area.kind, middleOf(area.polygon), { class: "on-map" });
-    }
-    for (const area of scene.design.keep_out) {
-      polygon(area.polygon, { stroke: "#b2182b", "stroke-width": 1.6, fill: "rgba(178,24,43,0.14)" });
-      const [x, y] = highest(area.polygon);
-      text(`keep out${area.kind ? `: ${area.kind}` : ""}`, [x, y + 4 / scale], { class: "on-map" });
-    }
-    for (const each of scene.design.obstacles) {
-      polygon(each.polygon, { stroke: "#3a3e44", fill: "rgba(90,95,102,0.7)" });
-      const [x, y] = highest(each.polygon);
-      text(each.kind || "obstacle", [x, y + 4 / scale], { class: "on-map" });
-    }
-    if (scene.design.truck) {
-      polygon(scene.design.truck.polygon, { stroke: "#33567a", fill: "rgba(77,120,163,0.5)" });
-      text("truck", middleOf(scene.design.truck.polygon), { class: "on-map" });
-    }
+    const { dump_areas, keep_out, obstacles, truck } = scene.design;
+    const look = (stroke, fill) => ({ stroke, fill, "stroke-width": 1.6 });
+    for (const area of dump_areas) polygon(area.polygon, look("#b36b00", "none"));
+    for (const area of keep_out) polygon(area.polygon, look("#b2182b", "rgba(178,24,43,0.14)"));
+    for (const each of obstacles) polygon(each.polygon, look("#3a3e44", "rgba(90,95,102,0.7)"));
+    if (truck) polygon(truck.polygon, look("#33567a", "rgba(77,120,163,0.5)"));
     machineOn(step);
     dumpOn(step);
     const reach = 1.5;
@@ -164,20 +166,27 @@ const makeMap = (moveCut) => {
       [cut.along, -axis.half - 2 * reach, cut.along, axis.half + 2 * reach],
     ]) {
       const [p, q] = [axis.place(a0, b0), axis.place(a1, b1)];
-      const [x1, y1, x2, y2] = [X(p[0]), Y(p[1]), X(q[0]), Y(q[1])];
-      const at = { x1, y1, x2, y2, "stroke-dasharray": "7 4" };
-      svgElement("line", { ...at, stroke: "#ffffff", "stroke-width": 3, opacity: 0.7 }, svg);
-      svgElement("line", { ...at, stroke: "#1d2024" }, svg);
+      const dashed = { "stroke-dasharray": "7 4" };
+      segment(p, q, { ...dashed, stroke: "#ffffff", "stroke-width": 3, opacity: 0.7 });
+      segment(p, q, { ...dashed, stroke: "#1d2024" });
     }
     edges();
+    for (const area of dump_areas) name(area.kind, middleOf(area.polygon));
+    for (const area of keep_out) {
+      name(`keep out${area.kind ? `: ${area.kind}` : ""}`, highest(area.polygon));
+    }
+    for (const each of obstacles) name(each.kind || "obstacle", highest(each.polygon));
+    if (truck) name("truck", middleOf(truck.polygon));
   };
 
   const key = (step) => {
     const node = element("map-key");
     node.replaceChildren();
     if (shown === "age") {
-      for (const share of [0, 0.25, 0.5, 0.75, 1])
-        addKey(node, `${(share * minutes[step]).toFixed(0)} min ago`, css(mix(ageRamp, share)), css(mix(ageRamp, share)));
+      for (const share of [0, 0.25, 0.5, 0.75, 1]) {
+        const colour = css(mix(ageRamp, share));
+        addKey(node, `${(share * minutes[step]).toFixed(0)} min ago`, colour, colour);
+      }
       addKey(node, "never seen", "#ffffff", "var(--soft)");
       return;
     }
@@ -186,20 +195,16 @@ const makeMap = (moveCut) => {
       const colour = css(errorColour(tolerance, factor * tolerance));
       addKey(node, text, colour, "var(--line)");
     };
-    const bounds = errorBounds;
-    bounds
-      .map((bound, k) => [bound, bounds[k + 1]])
-      .reverse()
-      .forEach(([bound, next]) =>
-        entry(next ? `+${centimetres(bound)} .. ${centimetres(next)}` : `over +${centimetres(bound)} cm`, bound * 1.01),
-      );
+    const bands = errorBounds.map((bound, k) => [bound, errorBounds[k + 1]]);
+    for (const [from, to] of bands.slice().reverse()) {
+      const low = `+${centimetres(from)}`;
+      entry(to ? `${low} .. ${centimetres(to)}` : `over ${low} cm`, from * 1.01);
+    }
     entry(`within ±${centimetres(1)}`, 0);
-    bounds.forEach((bound, k) =>
-      entry(
-        bounds[k + 1] ? `−${centimetres(bound)} .. ${centimetres(bounds[k + 1])}` : `below −${centimetres(bound)} cm`,
-        -bound * 1.01,
-      ),
-    );
+    for (const [from, to] of bands) {
+      const high = `−${centimetres(from)}`;
+      entry(to ? `${high} .. ${centimetres(to)}` : `below ${high} cm`, -from * 1.01);
+    }
   };
 
   const draw = (step, cut) => {
@@ -220,7 +225,8 @@ const makeMap = (moveCut) => {
     if (last) draw(...last);
   };
   for (const layer in layers) {
-    const button = htmlElement("button", { type: "button", textContent: layers[layer] }, element("layers"));
+    const button = htmlElement("button", { type: "button" }, element("layers"));
+    button.textContent = layers[layer];
     button.dataset.layer = layer;
     button.setAttribute("aria-pressed", String(layer === shown));
     button.addEventListener("click", () => {

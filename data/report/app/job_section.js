@@ -28,7 +28,8 @@ const makeJobSections = () => {
     drawSoil(drawn, box, profile(before), soilLooks.before);
     drawSoil(drawn, box, profile(z), soilLooks.after);
     const { X, Z, inside } = drawn;
-    const points = (list) => list.map(([x, h]) => `${X(x).toFixed(1)},${Z(h).toFixed(1)}`).join(" ");
+    const points = (list) =>
+      list.map(([x, h]) => `${X(x).toFixed(1)},${Z(h).toFixed(1)}`).join(" ");
     for (const stretch of stretchesOf(box, profile(target), 800)) {
       const band = [
         ...stretch.map(([x, h]) => [x, h + tolerance]),
@@ -41,11 +42,8 @@ const makeJobSections = () => {
         inside,
       );
     }
-    svgElement(
-      "line",
-      { x1: X(crossing), x2: X(crossing), y1: Z(box.z1), y2: Z(box.z0), stroke: "var(--ink)", "stroke-dasharray": "7 4" },
-      inside,
-    );
+    const at = { x1: X(crossing), x2: X(crossing), y1: Z(box.z1), y2: Z(box.z0) };
+    svgElement("line", { ...at, stroke: "var(--ink)", "stroke-dasharray": "7 4" }, inside);
   };
 
   const key = () => {

@@ -235,13 +235,14 @@ const makeView = () => {
     ask();
   });
 
-  stage.markEdges(extent, floor);
+  const wide = extent.x1 - extent.x0 >= extent.y1 - extent.y0;
+  const direction = wide ? [0.25, -1, 0.75] : [-1, -0.25, 0.75];
+  stage.markEdges(extent, floor, direction);
   const points = [];
   for (const x of [extent.x0, extent.x1])
     for (const y of [extent.y0, extent.y1])
       for (const z of [floor, range.high]) points.push([x, y, z]);
-  const wide = extent.x1 - extent.x0 >= extent.y1 - extent.y0;
-  stage.open(points, wide ? [0.25, -1, 0.75] : [-1, -0.25, 0.75]);
+  stage.open(points, direction);
   show(shown);
   return { draw };
 };

@@ -39,7 +39,9 @@ const makeSection = () => {
     const stage = element("stage");
     const beside =
       stage.clientWidth > 0 && stage.clientWidth < 0.8 * element("scene").clientWidth && !printing;
-    if (beside) box.z1 = Math.max(box.z1, box.z0 + (stage.clientHeight - margins.bottom - 14) / scale);
+    if (beside) {
+      box.z1 = Math.max(box.z1, box.z0 + (stage.clientHeight - margins.bottom - 14) / scale);
+    }
     const { X, Z, inside } = layAxes(svg, box, {
       width,
       scaleX: scale,

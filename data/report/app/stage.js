@@ -41,21 +41,26 @@ const makeStage = () => {
   // -- Marks: texts at places
   const marks = [];
   const mark = (text, x, y, z, kind) => {
-    const node = htmlElement("span", { textContent: text, className: kind || "" }, element("marks"));
+    const settings = { textContent: text, className: kind || "" };
+    const node = htmlElement("span", settings, element("marks"));
     const entry = { node, at: [x, y, z] };
     marks.push(entry);
     return entry;
   };
-  // Lengths along two edges of a rectangle.
-  const markEdges = (extent, z) => {
+  // Lengths along the two edges of a rectangle that are nearest to who looks from a direction.
+  const markEdges = (extent, z, direction) => {
     const span = Math.max(extent.x1 - extent.x0, extent.y1 - extent.y0);
     const narrow = stage.clientWidth < 560;
     const xs = ticks(extent.x0, extent.x1, narrow ? 6 : 10);
-    for (const x of xs.list) mark(`${signed(x, xs.digits)}`, x, extent.y0 - 0.03 * span, z);
+    const beyond = (low, high, above) => (share) =>
+      above ? high + share * span : low - share * span;
+    const beyondX = beyond(extent.x0, extent.x1, direction[0] > 0);
+    const beyondY = beyond(extent.y0, extent.y1, direction[1] > 0);
+    for (const x of xs.list) mark(`${signed(x, xs.digits)}`, x, beyondY(0.03), z);
     const ys = ticks(extent.y0, extent.y1, narrow ? 4 : 7);
-    for (const y of ys.list) mark(`${signed(y, ys.digits)}`, extent.x1 + 0.03 * span, y, z);
-    mark("x [m]", (extent.x0 + extent.x1) / 2, extent.y0 - (narrow ? 0.16 : 0.1) * span, z);
-    mark("y [m]", extent.x1 + (narrow ? 0.16 : 0.1) * span, (extent.y0 + extent.y1) / 2, z);
+    for (const y of ys.list) mark(`${signed(y, ys.digits)}`, beyondX(0.03), y, z);
+    mark("x [m]", (extent.x0 + extent.x1) / 2, beyondY(narrow ? 0.16 : 0.1), z);
+    mark("y [m]", beyondX(narrow ? 0.16 : 0.1), (extent.y0 + extent.y1) / 2, z);
   };
 
   const projected = new T.Vector3();

@@ -76,10 +76,14 @@ const makeView = () => {
   };
   drawPath();
 
+  // The longer side across; of ground that lies across, what the operator sees.
+  const across = !machine && extent.y1 - extent.y0 > extent.x1 - extent.x0;
+  const direction = across ? [-1, -0.35, 0.8] : [0.42, -1, machine ? 0.5 : 0.8];
+
   // -- Marks: lengths along the edges, volumes of the zones
   const makeMarks = () => {
     const span = Math.max(extent.x1 - extent.x0, extent.y1 - extent.y0);
-    stage.markEdges(extent, floor);
+    stage.markEdges(extent, floor, direction);
     const names = { dig: "hole", spill: "spill", dump: "heap", other: "left out" };
     const labelled = new Set(["other"]);
     for (const zone of [...scene.zones].sort((a, b) => b.volume_m3 - a.volume_m3)) {
@@ -150,9 +154,7 @@ const makeView = () => {
     button.addEventListener("click", () => show(kind));
   }
 
-  // The longer side across; of ground that lies across, what the operator sees.
-  const across = !machine && extent.y1 - extent.y0 > extent.x1 - extent.x0;
-  stage.open(corners(), across ? [-1, -0.35, 0.8] : [0.42, -1, machine ? 0.5 : 0.8]);
+  stage.open(corners(), direction);
   if (shown) show(shown);
   else legend("");
   return {
