@@ -340,7 +340,7 @@ void SiteJob::State::save_changed(const JobRecord& before, const JobStep& step,
     event.warnings.insert(event.warnings.end(), ground.warnings().begin(), ground.warnings().end());
   }
   event.left_volume = progress().left_volume;
-  log->append(std::move(event), {ground.expected().surface(), ground.site().ground().seen}, record);
+  log->append(std::move(event), {ground.expected().surface(), ground.seen()}, record);
   save_earlier_record(folder, before);
   save();
 }

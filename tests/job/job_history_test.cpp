@@ -97,6 +97,21 @@ TEST(JobHistory, HeightsAreKeptInMillimetresAndStepsAsWhatTheyChanged) {
   EXPECT_NE(error_of([&] { recorder.add({}, after); }).find("another grid"), std::string::npos);
 }
 
+/// The site grows when a scan from another place sees farther; design and ground are compared cell
+/// by cell.
+TEST(JobHistory, TheGroundStaysOnTheCellsOfTheFirstScan) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  const HeightMap first = job.ground().bank;
+  do of.make_step(job);
+  while (!of.report.scan);
+  EXPECT_TRUE(same_grid(job.ground().bank, first));
+  EXPECT_TRUE(same_grid(job.history().target, first));
+  const HeightMap cells = load_ground(of.path() + "/job-first-ground.tif").terrain.bank;
+  EXPECT_TRUE(same_grid(cells, first));
+}
+
 TEST(JobHistory, OfAJobThatWasResumedAfterEachStepIsThatOfOneThatWasNot) {
   const ShortTrench site;
   TrenchJob one{site}, other{site};
@@ -205,12 +220,15 @@ TEST(JobHistory, ADamagedLineIsNamedAndAJobWithoutALogGoesOn) {
   std::string log = log_of(of);
   log.replace(log.find("\"move\""), 6, "\"fly\"");
   std::ofstream(path, std::ios::binary) << log;
-  EXPECT_NE(error_of([&] { of.resume(); }).find("line 2: type"), std::string::npos);
+  EXPECT_NE(error_of([&] { of.resume(); }, ErrorKind::bad_file).find("line 2: type"),
+            std::string::npos);
   std::filesystem::remove(path);
-  SiteJob job = of.resume();
-  EXPECT_EQ(job.history().events.size(), 0U);
-  of.make_step(job);
-  EXPECT_EQ(job.history().events.size(), 1U);
+  {
+    SiteJob job = of.resume();
+    EXPECT_EQ(job.history().events.size(), 0U);
+    of.make_step(job);
+    EXPECT_EQ(job.history().events.size(), 1U);
+  }
   EXPECT_EQ(of.resume().history().events.size(), 1U);
 }
 
