@@ -41,7 +41,50 @@ PAGES = {
     "estimate-density": SCANS,
     "run-experiment": [],
 }
-PLAYED = [tool for tool in PAGES if tool != "estimate-density"]
+DUG = ["simulate-dig", "plan-path", "run-experiment"]  # pages with a slider of time
+PAGES["simulate-site"] = [f"{FOLDER.name}/site", "--planner", "operator", "--ground-after",
+                          f"{FOLDER.name}/after.asc"]
+
+
+def write_grid(name, cell, height):
+    """An ESRI ASCII grid of level ground around a short trench along x."""
+    cols, rows = round(18 / cell), round(14 / cell)
+    with open(f"{FOLDER.name}/site/{name}", "w", encoding="utf-8") as file:
+        file.write(f"ncols {cols}\nnrows {rows}\nxllcorner -8\nyllcorner -7\ncellsize {cell}\n")
+        file.write((" ".join([str(height)] * cols) + "\n") * rows)
+
+
+def write_site():
+    """A plain site (docs/formats.md)."""
+    os.makedirs(f"{FOLDER.name}/site/hidden")
+    write_grid("scan0.asc", 0.1, 0.0)
+    write_grid("hidden/ground.asc", 0.1, 0.0)
+    write_grid("hidden/density.asc", 0.5, 40.0)
+    square = [[-4.0, -3.0], [-3.0, -3.0], [-3.0, -2.0]]
+    site = {
+        "format": "plain-site", "version": 1, "id": "page",
+        "design": {"kind": "trench", "length_m": 2.0, "floor_width_m": 1.0, "depth_m": 0.4,
+                   "origin_m": [2.0, 0.0], "heading_rad": 0.0, "floor_z_at_middle_m": -0.4},
+        "tolerance_m": 0.03, "machine": {"class": "zx120"}, "soil": {"name": "loam"},
+        "start_pose": {"x": -0.2, "y": 0.0, "heading_rad": 0.0},
+        "sensor": {"name": "lidar", "mount": "cab", "noise_sd_at_1m_m": 0.0, "height_m": 3.0,
+                   "tilt_deg": 25, "field_of_view_deg": [360, 45]},
+        "dump_areas": [{"kind": "windrow", "polygon": [[-1, 1.5], [7, 1.5], [7, 5.5], [-1, 5.5]]}],
+        "keep_out": [{"kind": "cable", "polygon": square}],
+        "obstacles": [{"kind": "pole", "polygon": square, "height_m": 3.0}],
+        "files": {"first_scan": "scan0.asc"}}
+    for name, content in (("site.json", site), ("hidden/truth.json", {"payload_noise": 0.01})):
+        with open(f"{FOLDER.name}/site/{name}", "w", encoding="utf-8") as file:
+            json.dump(content, file)
+
+
+def read_grid(name):
+    """Rows of a grid from the south, its corner and its cell."""
+    with open(name, encoding="utf-8") as file:
+        head = [next(file).split() for _ in range(6)]
+        rows = [[float(z) for z in line.split()] for line in file]
+    values = {key.lower(): float(value) for key, value in head}
+    return rows[::-1], (values["xllcorner"], values["yllcorner"]), values["cellsize"]
 
 
 def browser(*arguments):
@@ -113,6 +156,7 @@ class Page(unittest.TestCase):
         with open(f"{DATA}/machines/zx120.json", encoding="utf-8") as file:
             cls.machine = json.load(file)
         cls.results = {}
+        write_site()
         for tool, words in PAGES.items():
             done = subprocess.run([f"{BIN}/{tool}", *words, "--json", "--report", cls.file(tool)],
                                   env={**os.environ, "EXCAVPLAN_DATA": DATA},
@@ -191,7 +235,7 @@ class Page(unittest.TestCase):
     def test_slider_moves_the_bucket_along_the_trajectory(self):
         with open(f"{FOLDER.name}/dig.json", encoding="utf-8") as file:
             written = [(point["time_s"], point["joints_rad"]) for point in json.load(file)["points"]]
-        for tool in PLAYED:
+        for tool in DUG:
             self.open(tool)
             dig = json.loads(self.script("return document.getElementById('data').textContent"))["digs"][0]
             points = list(zip(dig["time_s"], zip(*dig["joints_rad"])))
@@ -215,6 +259,50 @@ class Page(unittest.TestCase):
             self.assertEqual(seen, sorted(set(seen)))
             self.assertAlmostEqual(seen[-1], points[-1][0], delta=0.021)
             self.silent()
+
+    def test_job_is_played_to_the_ground_after(self):
+        self.open("simulate-site")
+        data = json.loads(self.script("return document.getElementById('data').textContent"))
+        count = len(data["events"])
+        slider = self.driver.find_element(By.ID, "time")
+        shown = {}
+        for key, step in ((Keys.END, count), (Keys.HOME, 0), (Keys.ARROW_RIGHT, 1), (Keys.END, count)):
+            slider.send_keys(key)
+            self.assertEqual(self.script("return excavplanReport.time()"), step)
+            self.assertIn(f"step {step} of {count}", self.driver.find_element(By.ID, "now").text)
+            heights = self.script("return excavplanReport.heights()")
+            self.assertEqual(heights, shown.setdefault(step, heights), "the way there does not matter")
+        self.assertEqual(set(shown[0]), {0})
+        rows, (x0, y0), cell = read_grid(f"{FOLDER.name}/after.asc")
+        for i, height in enumerate(shown[count]):
+            row = round((data["origin_m"][1] - y0) / cell) + 2 * (i // data["cols"])
+            col = round((data["origin_m"][0] - x0) / cell) + 2 * (i % data["cols"])
+            mean = sum(rows[row + k][col + l] for k in (0, 1) for l in (0, 1)) / 4
+            self.assertAlmostEqual(height, mean, delta=0.00051)
+        body = self.script("return document.querySelector('#steps tr.now').dataset.step")
+        self.assertEqual(int(body), count)
+        self.driver.find_element(By.CSS_SELECTOR, "[data-step='2'] td").click()
+        self.assertEqual(self.script("return excavplanReport.time()"), 2)
+        self.silent()
+
+    def test_job_shows_its_layers(self):
+        self.open("simulate-site")
+        pictures = [self.picture()]
+        for state in ("error", "change", "step"):
+            self.driver.find_element(By.CSS_SELECTOR, f"[data-state={state}]").send_keys(Keys.ENTER)
+            pictures.append(self.picture())
+        self.driver.find_element(By.ID, "sheet").send_keys(Keys.ENTER)
+        pictures.append(self.picture())
+        self.assertEqual(len(set(pictures)), len(pictures))
+        plan = "return document.getElementById('map').toDataURL()"
+        error = self.script(plan)
+        self.driver.find_element(By.CSS_SELECTOR, "[data-layer=age]").send_keys(Keys.ENTER)
+        self.assertNotEqual(self.script(plan), error)
+        across = "return document.getElementById('across-section').innerHTML"
+        before = self.script(across)
+        self.driver.find_element(By.ID, "map-box").click()
+        self.assertNotEqual(self.script(across), before, "a click moves the sections")
+        self.silent()
 
     def test_keys_play_and_turn(self):
         self.open("simulate-dig")
@@ -266,8 +354,9 @@ class Page(unittest.TestCase):
             for tool in PAGES:
                 self.open(tool, driver=driver)
                 self.assertTrue(driver.find_element(By.ID, "no-view").is_displayed())
-                self.assertTrue(driver.find_element(By.CSS_SELECTOR, "figure svg").is_displayed(), tool)
-                if tool in PLAYED:
+                stands_in = "#map" if tool == "simulate-site" else "figure svg"
+                self.assertTrue(driver.find_element(By.CSS_SELECTOR, stands_in).is_displayed(), tool)
+                if tool != "estimate-density":
                     driver.find_element(By.ID, "time").send_keys(Keys.END)
                     self.assertGreater(driver.execute_script("return excavplanReport.time()"), 1.0)
                 self.silent(driver)
