@@ -10,7 +10,8 @@ const About about = {
     "plan-site",
     "plans a whole job, from a design and a scan to finished ground, step by step. COMMAND is new "
     "(begins a job in FOLDER), next (the step to do now, the same until it is done), done (what "
-    "became of it), scan (takes in a scan that no step asked for), show (how far the job is) or "
+    "became of it), scan (takes in a scan that no step asked for), show (how far the job is, with "
+    "--report a page of it) or "
     "undo (takes the last done or scan back). FOLDER holds all that the job knows.",
     {{"plan-site new job --trench 15x1x0.5 --from 3,0 --heading 0 --scan scan.tif --soil loam "
       "--windrow 2,1.5,18,1.5,18,5,2,5",
