@@ -22,10 +22,12 @@ Report trial_report(const JobTrial& trial, ReportJob job) {
       "rms_m",           "p95_m",         "beyond_twice_percent",    "seen_percent", "left_percent",
       "overdig_percent", "spill_percent", "energy_kj_per_design_m3", "time_min"};
   report.note = "Ground and volumes are the true ones, which the planner does not see.";
-  if (trial.score.finished)
+  report.is_done = trial.score.finished;
+  if (trial.score.finished) {
     report.state = "Finished.";
-  else
+  } else {
     report.fault = "Not finished by the score. The planner's end: " + trial.reason + ".";
+  }
   report.job = std::move(job);
   return report;
 }
@@ -36,6 +38,7 @@ Report progress_report(const JobProgress& progress, ReportJob job) {
   report.headline = {"progress.left_m3", "progress.rms_m", "progress.p95_m",
                      "progress.seen",    "progress.digs",  "progress.stalls"};
   report.note = "The ground is that of the last scan, and what was dug since as foretold.";
+  report.is_done = progress.is_finished;
   report.state = progress.is_finished ? "Finished."
                                       : "Not finished: " + readable(progress.left_volume) + " of " +
                                             readable(progress.design_volume) + " m³ left.";

@@ -27,7 +27,7 @@ std::string verdict(const Report& report, const ReportedRun& run) {
     return shown("bad", "Do not trust this result.", "The reason is among the warnings below.");
   }
   if (!report.state.empty())
-    return shown(count == 0 ? "good" : "fair", html(report.state), warnings);
+    return shown(report.is_done ? "good" : "fair", html(report.state), warnings);
   if (run.judged) return shown("good", "Trustworthy.", warnings);
   return shown(count == 0 ? "good" : "fair", "Done.", warnings);
 }

@@ -23,7 +23,8 @@ struct Report {
   bool plot_always = false;  ///< the plot shows what nothing else on the page does
   ReportScene scene = {};
   std::optional<ReportJob> job = {};  ///< that the page is about, in place of a scene
-  std::string state = {};             ///< "Finished."; empty: as the run says
+  std::string state = {};             ///< "Not finished: ..."; empty: as the run says
+  bool is_done = false;               ///< that state is the one that was wanted
   std::string fault = {};             ///< "The dig stalled."; empty if nothing failed
   std::string note = {};              ///< what ground and loads of the scene are
 };

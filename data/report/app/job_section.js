@@ -6,7 +6,8 @@
 const makeJobSections = () => {
   const beyond = 1.2; // what is shown beside the design [m]
   const bases = { along: "along-section", across: "across-section" };
-  const heights = { low: range.low - 0.15, high: Math.max(range.low + 0.4, range.high) + 0.15 };
+  const deepest = target.reduce((low, z) => (z < low ? z : low), range.low);
+  const heights = { low: deepest - 0.15, high: Math.max(deepest + 0.4, range.high) + 0.15 };
 
   const draw = (name, box, placeAt, crossing, z) => {
     const svg = element(bases[name]);

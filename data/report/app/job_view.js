@@ -239,9 +239,13 @@ const makeView = () => {
   const direction = wide ? [0.25, -1, 0.75] : [-1, -0.25, 0.75];
   stage.markEdges(extent, floor, direction);
   const points = [];
-  for (const x of [extent.x0, extent.x1])
-    for (const y of [extent.y0, extent.y1])
-      for (const z of [floor, range.high]) points.push([x, y, z]);
+  const frame = (x0, x1, y0, y1, z0, z1) => {
+    for (const x of [x0, x1])
+      for (const y of [y0, y1]) for (const z of [z0, z1]) points.push([x, y, z]);
+  };
+  frame(extent.x0, extent.x1, extent.y0, extent.y1, floor, range.high);
+  for (const [x, y, z] of [baseAt(0), baseAt(lastStep)])
+    frame(x - 2.5, x + 2.5, y - 2.5, y + 2.5, z, z + 4);
   stage.open(points, direction);
   show(shown);
   return { draw };
