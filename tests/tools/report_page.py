@@ -279,9 +279,9 @@ class Page(unittest.TestCase):
             col = round((data["origin_m"][0] - x0) / cell) + 2 * (i % data["cols"])
             mean = sum(rows[row + k][col + l] for k in (0, 1) for l in (0, 1)) / 4
             self.assertAlmostEqual(height, mean, delta=0.00051)
-        body = self.script("return document.querySelector('#steps tr.now').dataset.step")
-        self.assertEqual(int(body), count)
-        self.driver.find_element(By.CSS_SELECTOR, "[data-step='2'] td").click()
+        row = self.script("return document.querySelector('#steps tr.now').dataset.step")
+        self.assertEqual(int(row), count)
+        self.script("document.querySelector('[data-step=\"2\"] td').click()")
         self.assertEqual(self.script("return excavplanReport.time()"), 2)
         self.silent()
 
