@@ -351,6 +351,19 @@ TEST_F(OpenFiles, ThatCannotBeWrittenToAreRefused) {
   EXPECT_EQ(content_of(path_), "old content");
 }
 
+TEST(OwnFiles, GrowFromAByteOnAndFollowNoLink) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("log"), link = folder.file("link");
+  write_own_tail(path, 0, "one\ntwo");
+  write_own_tail(path, 4, "three\n");
+  EXPECT_EQ(content_of(path), "one\nthree\n");
+  write_own_tail(path, 4, {});
+  EXPECT_EQ(content_of(path), "one\n");
+  std::filesystem::create_symlink(path, link);
+  error_about([&] { write_own_tail(link, 0, "over"); }, link);
+  EXPECT_EQ(content_of(path), "one\n");
+}
+
 TEST_F(OpenFiles, AreNotThoseOfOtherPaths) {
   for (const std::string& name : {path_, folder_.file("none"), std::string("/proc/self/exe"),
                                   std::string("/dev/null"), std::string("/proc/self/fd")}) {

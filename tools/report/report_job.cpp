@@ -47,6 +47,10 @@ Eigen::AlignedBox2d place_of(const JobHistory& history) {
   };
   if (history.design.start) add_machine(*history.design.start);
   for (const JobEvent& event : history.events) add_machine(event.base);
+  const Rectangle all = grid.extent();
+  if (box.isEmpty()) {
+    return {Eigen::Vector2d(all.x_min, all.y_min), Eigen::Vector2d(all.x_max, all.y_max)};
+  }
   return {box.min().array() - margin, box.max().array() + margin};
 }
 
