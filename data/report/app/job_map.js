@@ -187,7 +187,7 @@ const makeMap = (moveCut) => {
         const colour = css(mix(ageRamp, share));
         addKey(node, `${(share * minutes[step]).toFixed(0)} min ago`, colour, colour);
       }
-      addKey(node, "never seen", "#ffffff", "var(--soft)");
+      addKey(node, "not seen as it is now", "#ffffff", "var(--soft)");
       return;
     }
     const centimetres = (factor) => +(100 * factor * tolerance).toFixed(1);
