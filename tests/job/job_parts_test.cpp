@@ -6,9 +6,11 @@
 #include <fstream>
 
 #include <excavplan/job/job_motion.hpp>
+#include <excavplan/trial/job_score.hpp>
 
 #include "job/dump_place.hpp"
 #include "job/job_map.hpp"
+#include "job/job_record.hpp"
 #include "job/job_stations.hpp"
 #include "job/lane_view.hpp"
 #include "job/trench_job.hpp"
@@ -100,6 +102,43 @@ TEST(JobStations, LanesCoverTheWidth) {
   }
 }
 
+TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
+  HandMadeJob job;
+  const Machine& machine = job.settings.site.machine;
+  const auto stations = stations_of(job.frame(), job.settings);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const WorkRange range = work_range(job.frame(), machine, stations[i].along);
+    EXPECT_EQ(range.ends_at_wall, i == 0) << i;
+  }
+}
+
+/// Of a machine along the trench.
+bool stands_on(const Machine& machine, const Eigen::Vector2d& machine_at,
+               const Eigen::Vector2d& place) {
+  const Eigen::Vector2d off = (place - machine_at).cwiseAbs();
+  return off.x() < machine.track_front && off.y() < 0.5 * machine.undercarriage_width();
+}
+
+TEST(JobStations, TheLookoutIsBesideTheDesignOffTheSpoil) {
+  HandMadeJob job;  // the windrow is on the left
+  const auto right = lookout_of(job.frame(), job.settings, job.map());
+  ASSERT_TRUE(right);
+  EXPECT_TRUE(right->is_lookout());
+  const Eigen::Vector2d stands = job.frame().place(right->along, right->beside);
+  for (double x = -6.0; x <= 14.0; x += 0.1) {
+    for (const double y : {-0.5, 0.5, 1.5, 3.0})
+      EXPECT_FALSE(stands_on(job.settings.site.machine, stands, {x, y}));
+  }
+  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(-6.0, -6.0, 14.0, -1.5)}};
+  const auto left = lookout_of(job.frame(), job.settings, job.map());
+  ASSERT_TRUE(left);
+  EXPECT_GT(left->beside, 0.0);
+  EXPECT_LT(right->beside, 0.0);
+  job.settings.design.obstacles = {{"pole", box(8.0, 2.0, 8.2, 2.2), 4.0},
+                                   {"shed", box(0.0, 1.0, 9.0, 4.0), 3.0}};
+  EXPECT_FALSE(lookout_of(job.frame(), job.settings, job.map()));
+}
+
 TEST(DumpPlace, IsInTheAreaAndAwayFromTheTrench) {
   HandMadeJob job;
   const BasePose base = {3.0, 0.0, 0.0, 0.0};
@@ -137,6 +176,86 @@ TEST(LaneView, ItsFloorIsTheDesignAndAboveAKeepOut) {
   for (double x = 5.05; x < 5.95; x += 0.1) EXPECT_GE(floor(x), -0.2 - 1e-9) << x;
   for (double x = 8.05; x < 8.45; x += 0.1) EXPECT_FALSE(floor(x) < -1e-9) << x;
   EXPECT_FALSE(floor(-1.0) < -1e-9);
+}
+
+/// A bank of 0.3 m at the right of the lane y = 0, so wide [m], over a floor at -0.5 m.
+LaneView view_of_bank(HandMadeJob& job, double width) {
+  for_each_cell(job.ground.bank.z, [&](Cell at) {
+    const double y = job.ground.bank.y(at.row);
+    if (y > -0.35 + width && y < 0.5) job.ground.bank.z(at.row, at.col) = -0.5;
+    if (y < -0.35 + width) job.ground.bank.z(at.row, at.col) = -0.2;
+  });
+  const HandMadeJob level;
+  return LaneView(job.ground, level.map(), dig_line({0.0, 0.0, 0.0, 0.0}), {-2.0, -2.0, 12.0, 2.0},
+                  job.settings.site.machine.bucket.width_outside);
+}
+
+TEST(LaneView, ADigBeginsOnTheBankInItsLaneButNotOnTheEdgeThatItMayMiss) {
+  HandMadeJob job, edge;
+  const LaneView wide = view_of_bank(job, 0.3);
+  EXPECT_NEAR(wide.top()(5.0), -0.2, 0.02);
+  EXPECT_NEAR(wide.mean()(5.0), -0.38, 0.05);
+  const LaneView narrow = view_of_bank(edge, 0.05);
+  EXPECT_NEAR(narrow.top()(5.0), -0.5, 1e-9);
+}
+
+TEST(LaneView, WhatIsPushedAsideIsNotOfThePassThatPushedIt) {
+  HandMadeJob job;
+  job.ground.bank.z -= 0.45;  // 5 cm over the design
+  const JobMap map = HandMadeJob().map();
+  const LaneView view(job.ground, map, dig_line({0.0, 0.0, 0.0, 0.0}, 0.0, -0.1),
+                      {-2.0, -2.0, 12.0, 2.0}, job.settings.site.machine.bucket.width_outside);
+  TerrainPatch patch;
+  const Terrain& ground = view.ground().terrain();
+  patch.bank = ground.bank.z;
+  patch.loose = ground.loose;
+  const double cell = ground.bank.cell_size;
+  double under = 0.0, aside = 0.0;
+  for_each_cell(patch.bank, [&](Cell at) {
+    const double x = ground.bank.x(at.col), y = ground.bank.y(at.row);
+    if (x < 4.0 || x > 6.0) return;
+    if (std::abs(y) < 0.2) {
+      patch.bank(at.row, at.col) = -0.5;
+      under += 0.05 * cell * cell;
+    }
+    if (y > 0.36 && y < 0.45) {
+      patch.loose(at.row, at.col) = 0.1;
+      aside += 0.1 * cell * cell;
+    }
+  });
+  ASSERT_GT(aside, 0.0);
+  const ShapeChange change = view.change(patch, {0.0, 1e9});
+  EXPECT_NEAR(change.cleared, under, 1e-9);
+  EXPECT_NEAR(change.gained, under - aside, 1e-9);
+  EXPECT_EQ(change.at_end, 0.0);
+  EXPECT_NEAR(view.change(patch, {0.0, 5.0}).at_end, 0.5 * change.gained, 0.01 * under);
+}
+
+TEST(JobRecord, ComesBackWithThePlacesThatAreBarren) {
+  const TemporaryFolder folder;
+  JobRecord record;
+  record.barren = {{0.12, 5.4}, {-0.12, 4.6}};
+  record.passes_here = 3;
+  save_record(folder.file(""), record);
+  const JobRecord read = load_record(folder.file(""));
+  ASSERT_EQ(read.barren.size(), 2U);
+  EXPECT_EQ(read.barren[1].lane, -0.12);
+  EXPECT_EQ(read.barren[1].along, 4.6);
+  EXPECT_EQ(read.passes_here, 3);
+}
+
+TEST(JobGround, WhatADigChangedIsNotSeenUntilAScanSeesIt) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  do {
+    of.make_step(job);
+  } while (job.progress().digs == 0);
+  const double dug = job.progress().seen;
+  EXPECT_LT(dug, 0.9);
+  job.look(of.truth.scan(), of.truth.time() + 1.0);
+  EXPECT_GT(job.progress().seen, dug);
+  EXPECT_LE(job.progress().seen, of.truth.seen_share(footprint_of(of.hidden)) + 0.03);
 }
 
 TEST(JobMotion, TheToothStaysOnItsLane) {

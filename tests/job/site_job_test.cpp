@@ -172,8 +172,10 @@ TEST(SiteJob, WithExactScansATrenchIsDugToItsDesign) {
   const JobProgress done = job.progress();
   EXPECT_EQ(step.what, JobAction::stop);
   EXPECT_EQ(blocked, 0);
-  EXPECT_LT(done.left_volume, 0.25 * done.design_volume);
-  EXPECT_GT(share_within(of.truth.ground(), 0.03), 0.7);
+  EXPECT_LT(done.left_volume, 0.15 * done.design_volume);
+  EXPECT_GT(done.seen, 0.95);
+  EXPECT_GT(share_within(of.truth.ground(), 0.03), 0.92);
+  EXPECT_GT(share_within(of.truth.ground(), 0.06), 0.97);
 }
 
 TEST(SiteJob, AKeepOutIsNotCut) {
