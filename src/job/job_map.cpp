@@ -21,7 +21,6 @@ using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double unclear_margin = 0.0;  // beside walls, whose points fall on the floor; ours [m]
 constexpr double flattest_face = 0.15;  // of a batter; ours [rad]
 constexpr double least_faces = 0.1;     // share of the design; ours
 constexpr double least_share = 0.5;     // of a cell that is one of the design
@@ -86,7 +85,6 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   const DesignCover cover = cover_of(settings.surface, ground);
   map.target.z = (cover.share >= least_share).select(cover.height, std::nan("")).eval();
   map.counts = counting(map.target, design.edge_margin);
-  map.clear = counting(map.target, design.edge_margin + unclear_margin);
   map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
   for (const DumpArea& area : design.dump_areas) {
     for_each_inside(area.polygon, ground, [&](Cell at) { map.dump(at.row, at.col) = true; });

@@ -16,7 +16,6 @@ namespace excavplan {
 /// What is asked for in each cell.
 struct JobMap {
   HeightMap target;           ///< design height; NaN outside of its footprint [m]
-  Mask clear;                 ///< likewise, and so far from walls that a scan shows its height
   Mask counts;                ///< whether the cell counts for the deviation (CutOptions)
   Mask dump;                  ///< whether soil may be laid there
   Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none

@@ -51,7 +51,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
       surface_(ground_.terrain().surface()),
       target_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), nan)),
       dump_(Mask::Constant(surface_.z.rows(), surface_.z.cols(), false)),
-      clear_(dump_),
+      counts_(dump_),
       forbidden_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), -infinity)) {
   const PlanFrame frame(line.origin, line.heading);
   for_each_cell(target_, [&](Cell at) {
@@ -60,7 +60,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
     if (!cell) return;
     target_(at.row, at.col) = job.target.z(cell->row, cell->col) - line.z;
     dump_(at.row, at.col) = job.dump(cell->row, cell->col);
-    clear_(at.row, at.col) = job.clear(cell->row, cell->col);
+    counts_(at.row, at.col) = job.counts(cell->row, cell->col);
     forbidden_(at.row, at.col) = job.forbidden(cell->row, cell->col) - line.z;
   });
   look_under_bucket(bucket_width);
@@ -140,7 +140,7 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     if (surface_.x(cell.col) > rules.end) change.at_end += gained;
     // What a pass pushes aside is for the next one.
     const bool is_under = cell.row >= first_row_ && cell.row < end_row_;
-    if (is_under && clear_(cell.row, cell.col)) {
+    if (is_under && counts_(cell.row, cell.col)) {
       change.cleared += gained;
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -
                                std::max(0.0, std::abs(after - target) - slack));

@@ -66,7 +66,7 @@ class LaneView {
   HeightMap surface_;
   Eigen::ArrayXXd target_;  ///< in the view, NaN beside the design
   Mask dump_;
-  Mask clear_;
+  Mask counts_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
   Eigen::ArrayXd floor_, ground_at_, top_;

@@ -32,10 +32,11 @@ constexpr double high_share = 0.8;      // of the tolerance: higher cells call f
 constexpr double most_high = 0.03;      // share of cells that may stay so
 constexpr double heap_share = 1.6;      // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;    // share of these
-constexpr double least_seen = 0.99;     // of a finished design
-constexpr double after_stall = 0.7;     // of the depth of a cut
-constexpr double after_success = 1.1;   // likewise
-constexpr double shallowest_cut = 0.06;  // [m]
+constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
+constexpr double least_seen = 0.99;         // of a finished design
+constexpr double after_stall = 0.7;         // of the depth of a cut
+constexpr double after_success = 1.1;       // likewise
+constexpr double shallowest_cut = 0.06;     // [m]
 
 /// A scan that tells the ground alone.
 SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
@@ -79,8 +80,8 @@ JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& n
       static_cast<double>(errors.end() -
                           std::upper_bound(errors.begin(), errors.end(), 2.0 * tolerance)) /
       count;
-  progress.is_finished =
-      progress.p95 <= tolerance && progress.beyond_twice <= 0.01 && progress.seen >= least_seen;
+  progress.is_finished = progress.p95 <= tolerance && progress.beyond_twice <= most_beyond_twice &&
+                         progress.seen >= least_seen;
   return progress;
 }
 
@@ -199,14 +200,14 @@ bool SiteJob::State::wants_passes() const {
   const double half = 0.5 * settings.site.machine.bucket.width_outside;
   const Terrain& now = ground.expected();
   const auto above = [&](Cell cell) {
-    if (!map.clear(cell.row, cell.col)) return std::nan("");
+    if (!map.counts(cell.row, cell.col)) return std::nan("");
     return now.bank.z(cell.row, cell.col) + now.loose(cell.row, cell.col) -
            map.target.z(cell.row, cell.col);
   };
   int count = 0;
   int high = 0;
   int heaps = 0;
-  for_each_cell(map.clear, [&](Cell cell) {
+  for_each_cell(map.counts, [&](Cell cell) {
     if (std::isnan(above(cell))) return;
     const Eigen::Vector2d place = frame.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
     if (place.x() < range.near || place.x() > range.far) return;
@@ -214,7 +215,7 @@ bool SiteJob::State::wants_passes() const {
       return;
     double sum = above(cell);
     int known = 1;
-    for_each_neighbour(map.clear, cell, [&](Cell next) {
+    for_each_neighbour(map.counts, cell, [&](Cell next) {
       const double beside = above(next);
       if (std::isnan(beside)) return;
       sum += beside;
@@ -260,7 +261,10 @@ JobStep SiteJob::State::leave() {
     record.wants_scan = looks;
     return move_step();
   }
-  return step_of(JobAction::stop, "what is left cannot be dug");
+  const bool has_shape =
+      now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
+  return step_of(JobAction::stop,
+                 has_shape ? "the rest cannot be seen" : "what is left cannot be dug");
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
