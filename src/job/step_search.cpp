@@ -34,7 +34,6 @@ const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
-constexpr double lifted_worth = 0.02;  // of any soil that a finishing pass lifts, likewise
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
 constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
@@ -65,7 +64,6 @@ const std::array<double, 2> fills = {0.9,
 struct Candidate {
   std::size_t lane = 0;
   DigPath path;
-  PlannedDig dig{};
   double worth = 0.0;  ///< by the soil that it lifts
 };
 
@@ -77,6 +75,21 @@ struct Lane {
         ground(view.top()),
         mean(view.mean()),
         excess(view.excess(allowance)) {}
+
+  /// Soil that stands over the rest of the lane there: a bucket cannot begin within it.
+  bool has_bank_at(double x) const { return ground(x) - mean(x) > standing; }
+  /// Of a value of each column, over a part of the lane; NaN if none of it is known.
+  template <typename Value>
+  double mean_over(double from, double to, Value value) const {
+    double sum = 0.0;
+    int known = 0;
+    for (Index col = 0; col < view.columns(); ++col) {
+      if (view.x(col) < from || view.x(col) > to || std::isnan(value(col))) continue;
+      sum += value(col);
+      ++known;
+    }
+    return known > 0 ? sum / known : std::nan("");
+  }
 
   LaneView view;
   GroundProfile floor;
@@ -116,8 +129,12 @@ class StepSearch {
 
   /// As steeply as the machine surely can.
   std::optional<StepDig> best_at_wall() {
+    std::vector<std::size_t> lanes;
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+      if (has_end_wall(lanes_[lane])) lanes.push_back(lane);
+    }
     for (const Attitude& attitude : wall_attitudes) {
-      for (std::size_t lane = 0; lane < lanes_.size(); ++lane) cut_end_wall(lane, attitude);
+      for (const std::size_t lane : lanes) cut_end_wall(lane, attitude);
       auto dig = best(Aim::wall);
       candidates_.clear();
       if (dig && !dig->may_stall) return dig;
@@ -127,9 +144,9 @@ class StepSearch {
 
   std::optional<StepDig> best(Aim aim) {
     parallel_for(candidates_.size(), 0, [&](std::size_t i) { weigh(candidates_[i]); });
-    const auto end = std::stable_partition(candidates_.begin(), candidates_.end(),
-                                           [](const Candidate& each) { return each.worth > 0.0; });
-    candidates_.erase(end, candidates_.end());
+    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
+                                     [](const Candidate& each) { return !(each.worth > 0.0); }),
+                      candidates_.end());
     std::stable_sort(candidates_.begin(), candidates_.end(),
                      [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
     std::optional<StepDig> best;
@@ -189,7 +206,7 @@ class StepSearch {
     const double last = task_.near + least_pass * (task_.far - task_.near);
     for (double start = task_.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
-      if (lanes_[lane].ground(start) - ground(start) > standing) {
+      if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
       }
@@ -205,7 +222,9 @@ class StepSearch {
   template <typename Attitudes>
   void lay_out_layers(std::size_t lane, double start, const Attitudes& with, DigPathOptions rules) {
     const GroundProfile& ground = lanes_[lane].ground;
-    const double level = mean_ground(lanes_[lane].view, start - level_to, start - level_from);
+    const LaneView& view = lanes_[lane].view;
+    const double level = lanes_[lane].mean_over(start - level_to, start - level_from,
+                                                [&](Index col) { return view.ground_at(col); });
     if (std::isnan(level)) return;
     for (const double cut : cut_depths) {
       if (cut > task_.deepest_cut) break;
@@ -218,18 +237,15 @@ class StepSearch {
     }
   }
 
-  /// Steep layers from the end of the work while soil stands before it: a flat cut would leave a
-  /// ramp there, which is costly to take off by itself.
+  /// Whether soil stands before the end of the work.
+  bool has_end_wall(const Lane& lane) const {
+    return lane.mean_over(task_.far - wall_from, task_.far - wall_to,
+                          [&](Index col) { return lane.excess(col); }) > high_wall;
+  }
+
+  /// Steep layers from the end of the work: a flat cut would leave a ramp there, which is costly to
+  /// take off by itself.
   void cut_end_wall(std::size_t lane, const Attitude& attitude) {
-    const LaneView& view = lanes_[lane].view;
-    double sum = 0.0;
-    int count = 0;
-    for (Index col = 0; col < view.columns(); ++col) {
-      if (view.x(col) < task_.far - wall_from || view.x(col) > task_.far - wall_to) continue;
-      sum += lanes_[lane].excess(col);
-      ++count;
-    }
-    if (count == 0 || sum <= high_wall * count) return;
     DigPathOptions rules = rules_in(lane);
     lay_out_layers(lane, task_.far, std::array{attitude}, rules);
     // From its top, where what lies before it is deeper already.
@@ -272,18 +288,6 @@ class StepSearch {
                     machine_.track_front + DigPathOptions{}.track_margin + curls + rounded);
   }
 
-  /// Of a part of a lane; NaN if none of it is known.
-  static double mean_ground(const LaneView& view, double from, double to) {
-    double sum = 0.0;
-    int known = 0;
-    for (Index col = 0; col < view.columns(); ++col) {
-      if (view.x(col) < from || view.x(col) > to || std::isnan(view.ground_at(col))) continue;
-      sum += view.ground_at(col);
-      ++known;
-    }
-    return known > 0 ? sum / known : std::nan("");
-  }
-
   bool is_worth_a_dig(const Lane& lane, double start) const {
     const LaneView& view = lane.view;
     if (std::isnan(lane.ground(start) - lane.floor(start))) return false;
@@ -321,8 +325,7 @@ class StepSearch {
            const DigPathOptions& rules) {
     if (is_barren(task_.lanes[lane], start)) return;
     const Lane& at = lanes_[lane];
-    const bool is_level = at.ground(start) - at.mean(start) <= standing;
-    const GroundProfile& ground = task_.finishing && is_level ? at.mean : at.ground;
+    const GroundProfile& ground = task_.finishing && !at.has_bank_at(start) ? at.mean : at.ground;
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
     if (auto* made = std::get_if<DigPath>(&path)) candidates_.push_back({lane, std::move(*made)});
   }
@@ -347,16 +350,13 @@ class StepSearch {
   void weigh(Candidate& candidate) const {
     const Terrain& ground = lanes_[candidate.lane].view.ground().terrain();
     const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle());
-    if (!std::holds_alternative<PlannedDig>(dig)) return;
-    candidate.dig = std::get<PlannedDig>(dig);
-    candidate.worth = candidate.dig.payload_mass / cost(candidate.dig);
+    if (const auto* planned = std::get_if<PlannedDig>(&dig))
+      candidate.worth = planned->payload_mass / cost(*planned);
   }
 
   std::optional<StepDig> confirm(const Candidate& candidate, Aim aim) const {
     const LaneView& view = lanes_[candidate.lane].view;
     const Terrain& ground = view.ground().terrain();
-    const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle());
-    const auto* hard = std::get_if<PlannedDig>(&in_hard);
     auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle());
     auto* found = std::get_if<SimulatedDig>(&dug);
     if (found == nullptr) return std::nullopt;
@@ -367,6 +367,8 @@ class StepSearch {
     step.change = view.change(found->result.patch, {task_.slack, task_.far - wall_from});
     const double gain = gain_of(step, aim);
     if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;
+    const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle());
+    const auto* hard = std::get_if<PlannedDig>(&in_hard);
     step.may_stall = hard == nullptr;
     step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
     if (hard != nullptr) {
@@ -383,8 +385,7 @@ class StepSearch {
     const double spoiled = deep_price * change.too_deep + spill_price * change.spilled;
     if (aim == Aim::wall) return change.gained + wall_worth * change.at_end - spoiled;
     if (aim == Aim::volume) return change.gained - spoiled;
-    const double shaped = std::max(change.shaped, cleared_worth * change.cleared);
-    return (shaped > 0.0 ? shaped : lifted_worth * step.dig.payload_volume) - spoiled;
+    return std::max(change.shaped, cleared_worth * change.cleared) - spoiled;
   }
 
   /// Less is not worth a cycle.
