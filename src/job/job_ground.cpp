@@ -56,26 +56,6 @@ void hold_steep(const SoilKind& soil, Terrain& ground) {
   });
 }
 
-/// The part of a ground on an earlier grid of the same site, which only grows.
-GroundState part_on(const HeightMap& grid, GroundState ground) {
-  HeightMap& bank = ground.terrain.bank;
-  if (same_grid(bank, grid)) return ground;
-  const Eigen::Vector2d shift = (grid.origin - bank.origin) / bank.cell_size;
-  const Eigen::Index row = std::lround(shift.y());
-  const Eigen::Index col = std::lround(shift.x());
-  const auto cut_out = [&](Eigen::ArrayXXd& layer) {
-    if (layer.size() > 0) layer = layer.block(row, col, grid.z.rows(), grid.z.cols()).eval();
-  };
-  Terrain& terrain = ground.terrain;
-  for (Eigen::ArrayXXd* layer :
-       {&bank.z, &terrain.loose, &terrain.bank_void_ratio, &terrain.loose_void_ratio,
-        &terrain.obstacles, &ground.seen, &ground.deviation}) {
-    cut_out(*layer);
-  }
-  bank.origin = grid.origin;
-  return ground;
-}
-
 /// Where a scan did not see what was dug, it is as foretold, and not seen since.
 void keep_unseen(const Terrain& expected, const Eigen::ArrayXXd& seen, double time,
                  GroundState& scanned) {
@@ -128,7 +108,9 @@ std::optional<double> JobGround::take_in(const SiteEvent& event) {
   const bool is_first = before.seen.size() == 0;
   const SiteUpdate update = site_.update(event);
   warnings_ = update.warnings;
-  scanned_ = is_first ? site_.ground() : part_on(before.terrain.bank, site_.ground());
+  const HeightMap& cells = before.terrain.bank;
+  const bool has_grown = !is_first && !same_grid(cells, site_.ground().terrain.bank);
+  scanned_ = has_grown ? site_.ground_for({}, cells.extent(), cells.cell_size) : site_.ground();
   scanned_.terrain.doubts.clear();
   if (!is_first) keep_unseen(expected, seen_, event.time, scanned_);
   hold_steep(settings_.site.soil, scanned_.terrain);

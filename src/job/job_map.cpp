@@ -78,6 +78,11 @@ void require_job_settings(const JobSettings& settings) {
   require_in("job: price of a second [W]", settings.time_price, 0.0, 1e6);
 }
 
+double above_design(const JobMap& map, const Terrain& ground, Cell at) {
+  return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col) -
+         map.target.z(at.row, at.col);
+}
+
 JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   const JobDesign& design = settings.design;
   JobMap map;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/job/job_settings.hpp>
 
 #include "ground/grid_cells.hpp"
@@ -20,6 +21,9 @@ struct JobMap {
   Mask dump;                  ///< whether soil may be laid there
   Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none
 };
+
+/// Of a ground over the design; NaN beside it, or where either is not known [m].
+double above_design(const JobMap& map, const Terrain& ground, Cell at);
 
 /// @param ground  before the job
 JobMap map_of(const JobSettings& settings, const HeightMap& ground);

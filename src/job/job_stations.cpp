@@ -23,8 +23,7 @@ constexpr double lane_overlap = 0.1;    // of two lanes [m]
 constexpr double batter_step = 0.3;     // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
-
-constexpr double beside_edge = 0.6;      // of tracks that stand beside the design, likewise [m]
+constexpr double beside_edge = 0.6;      // of tracks that stand beside the design [m]
 constexpr double beyond_near_end = 6.0;  // of the swing axis of a machine that looks at it [m]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
@@ -47,6 +46,19 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
     groups.back().push_back(lane);
   }
   return groups;
+}
+
+/// The places under the tracks of a machine at a station, a cell apart.
+template <typename Visit>
+void for_each_under(const JobFrame& frame, const JobStation& station, const Machine& machine,
+                    const HeightMap& grid, Visit visit) {
+  const double half = 0.5 * machine.undercarriage_width();
+  for (double x = -machine.track_front; x <= machine.track_front; x += grid.cell_size) {
+    for (double y = -half; y <= half; y += grid.cell_size) {
+      const Eigen::Vector2d at = frame.place(station.along + x, station.beside + y);
+      visit(cell_at(grid, at.x(), at.y()));
+    }
+  }
 }
 
 double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
@@ -90,17 +102,13 @@ std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& s
   const Machine& machine = settings.site.machine;
   const double half = 0.5 * machine.undercarriage_width();
   const auto is_free = [&](const JobStation& station) {
-    for (double x = -machine.track_front; x <= machine.track_front; x += map.target.cell_size) {
-      for (double y = -half; y <= half; y += map.target.cell_size) {
-        const Eigen::Vector2d at = frame.place(station.along + x, station.beside + y);
-        const auto cell = cell_at(map.target, at.x(), at.y());
-        if (!cell || !std::isnan(map.target.z(cell->row, cell->col))) return false;
-        if (map.dump(cell->row, cell->col)) return false;
-        if (map.forbidden(cell->row, cell->col) > -std::numeric_limits<double>::infinity())
-          return false;
-      }
-    }
-    return true;
+    bool free = true;
+    for_each_under(frame, station, machine, map.target, [&](const std::optional<Cell>& cell) {
+      free &= cell && std::isnan(map.target.z(cell->row, cell->col)) &&
+              !map.dump(cell->row, cell->col) &&
+              map.forbidden(cell->row, cell->col) == -std::numeric_limits<double>::infinity();
+    });
+    return free;
   };
   // To the left first: the cab, with what scans, is then nearer to the edge.
   for (const double side : {frame.left + beside_edge + half, frame.right - beside_edge - half}) {
@@ -114,19 +122,14 @@ BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain
                  const Machine& machine) {
   const Eigen::Vector2d place = frame.place(station.along, station.beside);
   BasePose base = {place.x(), place.y(), 0.0, frame.heading + station.turned};
-  const double half = 0.5 * machine.undercarriage_width();
   double sum = 0.0;
   int known = 0;
-  for (double x = -machine.track_front; x <= machine.track_front; x += ground.bank.cell_size) {
-    for (double y = -half; y <= half; y += ground.bank.cell_size) {
-      const Eigen::Vector2d at = frame.place(station.along + x, station.beside + y);
-      const auto cell = cell_at(ground.bank, at.x(), at.y());
-      const double z = cell ? ground.bank.z(cell->row, cell->col) : std::nan("");
-      if (std::isnan(z)) continue;
-      sum += z + ground.loose(cell->row, cell->col);
-      ++known;
-    }
-  }
+  for_each_under(frame, station, machine, ground.bank, [&](const std::optional<Cell>& cell) {
+    const double z = cell ? ground.bank.z(cell->row, cell->col) : std::nan("");
+    if (std::isnan(z)) return;
+    sum += z + ground.loose(cell->row, cell->col);
+    ++known;
+  });
   if (known > 0) base.z = sum / known;
   return base;
 }

@@ -59,10 +59,9 @@ JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& n
   int cells = 0;
   int seen = 0;
   for_each_cell(map.target.z, [&](Cell at) {
-    const double target = map.target.z(at.row, at.col);
-    if (std::isnan(target)) return;
+    if (std::isnan(map.target.z(at.row, at.col))) return;
     ++cells;
-    const double error = ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col) - target;
+    const double error = above_design(map, ground, at);
     if (std::isnan(error)) return;
     if (!std::isnan(now.seen()(at.row, at.col))) ++seen;
     progress.left_volume += area * std::max(0.0, error);
@@ -200,9 +199,7 @@ bool SiteJob::State::wants_passes() const {
   const double half = 0.5 * settings.site.machine.bucket.width_outside;
   const Terrain& now = ground.expected();
   const auto above = [&](Cell cell) {
-    if (!map.counts(cell.row, cell.col)) return std::nan("");
-    return now.bank.z(cell.row, cell.col) + now.loose(cell.row, cell.col) -
-           map.target.z(cell.row, cell.col);
+    return map.counts(cell.row, cell.col) ? above_design(map, now, cell) : std::nan("");
   };
   int count = 0;
   int high = 0;
