@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -104,6 +106,11 @@ Json parse(const std::string& name, const std::string& content, std::size_t most
   Json::sax_parse(content, &builder);
   return std::move(builder.value());
 }
+
+constexpr std::array warning_codes = {
+#define EXCAVPLAN_WARNING(code, trust) WarningCode::code,
+#include <excavplan/base/warning_codes.def>
+};
 
 }  // namespace
 
@@ -306,6 +313,30 @@ void require_storable(const nlohmann::ordered_json& json, const std::string& wha
       refuse(*fault);
     }
   }
+}
+
+nlohmann::ordered_json warnings_json(const std::vector<Warning>& warnings) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Warning& each : warnings) {
+    list.push_back({{"code", code_text(each.code)},
+                    {"message", each.message},
+                    {"ends_trust", each.ends_trust}});
+  }
+  return list;
+}
+
+std::vector<Warning> read_warnings(std::vector<JsonObject> list) {
+  std::vector<Warning> warnings;
+  for (JsonObject& each : list) {
+    const std::string code = each.text("code");
+    const auto known =
+        std::find_if(warning_codes.begin(), warning_codes.end(),
+                     [&](WarningCode candidate) { return code_text(candidate) == code; });
+    if (known == warning_codes.end()) each.fail("code", "is no code of a warning");
+    warnings.emplace_back(*known, each.text("message"), each.flag("ends_trust"));
+    each.done();
+  }
+  return warnings;
 }
 
 }  // namespace excavplan

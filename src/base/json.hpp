@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <excavplan/base/warning.hpp>
+
 #include "base/text.hpp"
 
 /// @file
@@ -111,5 +113,11 @@ void require_storable(const nlohmann::ordered_json& json, const std::string& wha
 std::string sealed(const std::string& content);
 /// An object as text, with its checksum as the last key.
 std::string sealed_text(const nlohmann::ordered_json& object);
+
+/// Key `warnings` of a result, a record or a log: of each its code, its message and whether it ends
+/// trust.
+nlohmann::ordered_json warnings_json(const std::vector<Warning>& warnings);
+/// Reads them back. @throws Error (bad_file) naming file, key, value and rule
+std::vector<Warning> read_warnings(std::vector<JsonObject> list);
 
 }  // namespace excavplan

@@ -122,7 +122,7 @@ Json event_json(const JobEvent& event) {
   if (!event.reason.empty()) line["reason"] = event.reason;
   line["scanned"] = event.scanned;
   line["trustworthy"] = event.trustworthy;
-  line["warnings"] = kept_warnings_json(event.warnings);
+  line["warnings"] = warnings_json(event.warnings);
   line["left_m3"] = event.left_volume;
   return line;
 }
@@ -163,7 +163,7 @@ JobEvent read_event(JsonObject& object) {
   event.reason = object.text_or("reason", "");
   event.scanned = object.flag("scanned");
   event.trustworthy = object.flag("trustworthy");
-  event.warnings = read_kept_warnings(object.objects("warnings"));
+  event.warnings = read_warnings(object.objects("warnings"));
   event.left_volume = object.number("left_m3");
   return event;
 }

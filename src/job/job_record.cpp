@@ -101,7 +101,7 @@ Json step_json(const JobStep& step) {
                {"energy_interval_j", step.predicted.energy_interval},
                {"time_s", step.predicted.time},
                {"trustworthy", step.trustworthy},
-               {"warnings", kept_warnings_json(step.warnings)},
+               {"warnings", warnings_json(step.warnings)},
                {"reason", step.reason}};
   const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;
   if (digs) json["path"] = path_json(step.path);
@@ -128,7 +128,7 @@ JobStep read_step(JsonObject object) {
   const std::vector<double> energies = object.numbers("energy_interval_j", 2);
   foretold.energy_interval = {energies[0], energies[1]};
   step.trustworthy = object.flag("trustworthy");
-  step.warnings = read_kept_warnings(object.objects("warnings"));
+  step.warnings = read_warnings(object.objects("warnings"));
   step.reason = object.text("reason");
   if (object.has("path")) step.path = read_path(object.object("path"));
   object.done();

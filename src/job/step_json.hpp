@@ -28,10 +28,6 @@ Value of_word(JsonObject& object, const char* key, const std::array<Value, size>
 inline constexpr std::array actions = {JobAction::dig,  JobAction::finish, JobAction::move,
                                        JobAction::scan, JobAction::wait,   JobAction::stop};
 
-nlohmann::ordered_json kept_warnings_json(const std::vector<Warning>& warnings);
-/// @throws Error (bad_file) naming file, key, value and rule
-std::vector<Warning> read_kept_warnings(std::vector<JsonObject> list);
-
 /// Of a log, whose bases are without units in their keys, as other programs read them.
 nlohmann::ordered_json log_base_json(const BasePose& base);
 nlohmann::ordered_json log_foretold_json(const ForetoldStep& foretold);

@@ -6,7 +6,6 @@
 #include "planning/planned_digs.hpp"
 #include "results/density_results.hpp"
 #include "results/volume_results.hpp"
-#include "results/warning_results.hpp"
 
 namespace excavplan {
 namespace {

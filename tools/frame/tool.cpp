@@ -28,7 +28,6 @@
 #include "frame/option_names.hpp"
 #include "frame/signals.hpp"
 #include "frame/stack.hpp"
-#include "results/warning_results.hpp"
 
 namespace excavplan::tools {
 namespace {
