@@ -32,6 +32,11 @@ std::string app(const std::vector<const char*>& parts) {
   return text;
 }
 
+/// The view in three dimensions of what is shown, with a note below.
+std::string stage_of(const char* shown, const std::string& note) {
+  return filled("stage.html", {{"shown", shown}, {"note", html(note)}});
+}
+
 }  // namespace
 
 std::string html(const std::string& text) {
@@ -60,7 +65,7 @@ std::string filled(const std::string& name, const std::map<std::string, std::str
 }
 
 ReportBody body_of(const ReportScene& scene, const std::string& note) {
-  return {filled("dig.html", {{"note", html(note)}}),
+  return {filled("dig.html", {{"stage", stage_of("ground", note)}}),
           "Site frame: origin on the swing axis of the machine at ground level, x forward in the "
           "boom plane, y left, z up; lengths in metres.",
           embedded(to_json(scene)),
@@ -70,13 +75,14 @@ ReportBody body_of(const ReportScene& scene, const std::string& note) {
 }
 
 ReportBody body_of(const ReportJob& job, const std::string& note) {
-  return {filled("job.html", {{"note", html(note)}, {"steps", step_rows(job.history)}}),
-          "Frame: that of the site, x east, y north, z up; headings counter-clockwise from x; "
-          "lengths in metres.",
-          embedded(to_json(job)),
-          app({"page", "data", "cells", "colours", "job_scene", "kinematics", "legend", "stage",
-               "ground_mesh", "machine_model", "job_view", "job_map", "axes", "job_section",
-               "charts", "job_charts", "player", "job_page", "end"})};
+  return {
+      filled("job.html", {{"stage", stage_of("site", note)}, {"steps", step_rows(job.history)}}),
+      "Frame: that of the site, x east, y north, z up; headings counter-clockwise from x; "
+      "lengths in metres.",
+      embedded(to_json(job)),
+      app({"page", "data", "cells", "colours", "job_scene", "kinematics", "legend", "stage",
+           "ground_mesh", "machine_model", "job_view", "job_map", "axes", "job_section", "charts",
+           "job_charts", "player", "job_page", "end"})};
 }
 
 }  // namespace excavplan::tools
