@@ -8,29 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "base/statistics.hpp"
+#include "trial/site_sensors.hpp"
 
 namespace excavplan::test {
 namespace {
-
-SiteSensor lidar() {
-  SiteSensor sensor;
-  sensor.name = "lidar";
-  sensor.height = 3.0;
-  sensor.tilt = 0.44;
-  sensor.view = {6.2831853, 0.785};
-  return sensor;
-}
-
-SiteSensor camera() {
-  SiteSensor sensor = lidar();
-  sensor.name = "camera";
-  sensor.range_power = 2.0;
-  sensor.on_boom = true;
-  sensor.height = 3.2;
-  sensor.tilt = 0.61;
-  sensor.view = {1.204, 0.733};
-  return sensor;
-}
 
 HeightMap level() { return flat_ground({-15, -15, 15, 15}, 0.025); }
 

@@ -14,6 +14,7 @@
 #include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
 #include "support/run_program.hpp"
+#include "trial/site_sensors.hpp"
 
 /// @file
 /// What a site knows of an open trench that it sees from one place after the other.
@@ -24,24 +25,8 @@ namespace {
 constexpr double fine = 0.025;  // [m]
 constexpr double wrong = 0.05;  // [m]
 
-SiteSensor lidar() {
-  SiteSensor sensor;
-  sensor.name = "lidar";
-  sensor.noise = 0.004;
-  sensor.tilt = 0.44;
-  sensor.view = {6.2831853, 0.785};
-  return sensor;
-}
-
-SiteSensor camera() {
-  SiteSensor sensor = lidar();
-  sensor.name = "camera";
-  sensor.noise = 0.0003;
-  sensor.range_power = 2.0;
-  sensor.on_boom = true;
-  sensor.height = 3.2;
-  sensor.tilt = 0.61;
-  sensor.view = {1.204, 0.733};
+SiteSensor with_noise(SiteSensor sensor, double noise) {
+  sensor.noise = noise;
   return sensor;
 }
 
@@ -160,7 +145,7 @@ class TrenchSite {
 TEST(SiteViews, WhatAScanDoesNotSeeKeepsWhatIsKnown) {
   const std::vector<BasePose> places = {
       {0, 0, 0, 0}, {5, -2, 0, 0}, {-2.7, 0, 0, 0}, {5, -3, 0, 0}};
-  for (const SiteSensor& sensor : {lidar(), camera()}) {
+  for (const SiteSensor& sensor : {with_noise(lidar(), 0.004), with_noise(camera(), 0.0003)}) {
     TrenchSite site;
     int shadow = 0;
     for (const BasePose& base : places) {
