@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <excavplan/simulation/dig_along.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -95,9 +96,11 @@ void JobGround::expect(const JobStep& dig, double height_bias) {
   const DigResult result = dig_along(simulator, machine, expected_, {line, voids, dig.path});
   forget_changed(expected_, result.patch, seen_);
   apply(result.patch, expected_);
-  if (!dig.truck) {
-    heap_soil(expected_, soil, settings_.density_percent, dig.dump.head<2>(),
-              result.payload_volume);
+  kept_ += result.payload_volume;
+  if (!dig.keeps_load) {
+    const double volume = std::exchange(kept_, 0.0);
+    if (!dig.truck)
+      heap_soil(expected_, soil, settings_.density_percent, dig.dump.head<2>(), volume);
   }
   unseen_.push_back(dig);
 }
@@ -122,6 +125,7 @@ void JobGround::begin_at_scan() {
   expected_ = scanned_.terrain;
   seen_ = scanned_.seen;
   unseen_.clear();
+  kept_ = 0.0;
 }
 
 std::string JobGround::file_of(long long number) const {

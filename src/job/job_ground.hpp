@@ -56,6 +56,7 @@ class JobGround {
   Terrain expected_;     ///< with what was dug since
   Eigen::ArrayXXd seen_;
   std::vector<JobStep> unseen_;
+  double kept_ = 0.0;  ///< loose, in the bucket, of digs since the last scan [m^3]
   std::vector<Warning> warnings_;
 };
 

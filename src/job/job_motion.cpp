@@ -156,6 +156,7 @@ std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, cons
   CycleWayOptions cycle;
   cycle.whole_cycle = true;
   cycle.cycle.swing = turns.dump;
+  cycle.cycle.keeps_load = step.keeps_load;
   cycle.cycle.dump_height = std::max(0.0, step.dump.z() - step.base.z);
   cycle.dump_radius = dump.norm();
   auto laid = way_of_cycle(machine, seen_along(settings, ground, turned), std::get<DigPath>(path),

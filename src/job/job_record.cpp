@@ -94,6 +94,7 @@ Json step_json(const JobStep& step) {
                {"swung_rad", step.swung},
                {"lane_m", step.lane},
                {"dump_m", {step.dump.x(), step.dump.y(), step.dump.z()}},
+               {"keeps_load", step.keeps_load},
                {"truck", step.truck.value_or(0)},
                {"payload_kg", step.predicted.payload_mass},
                {"payload_interval_kg", step.predicted.payload_interval},
@@ -117,6 +118,7 @@ JobStep read_step(JsonObject object) {
   step.lane = object.number("lane_m");
   const std::vector<double> dump = object.numbers("dump_m", 3);
   step.dump = {dump[0], dump[1], dump[2]};
+  step.keeps_load = object.flag("keeps_load");
   const int truck = static_cast<int>(object.number("truck", 0, 1e9));
   if (truck > 0) step.truck = truck;
   ForetoldStep& foretold = step.predicted;
@@ -189,6 +191,7 @@ template <typename Record, typename Visit>
 void for_each_number(Record& record, Visit visit) {
   visit("deepest_cut_m", record.deepest_cut);
   visit("truck_load_kg", record.truck_load);
+  visit("carried_m3", record.carried);
   visit("strength_share", record.strength_share);
   visit("first_volume_m3", record.progress.design_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
@@ -215,6 +218,12 @@ Json record_json(const JobRecord& record) {
   for (const DigStart& each : record.barren) {
     json["barren"].push_back(each.lane);
     json["barren"].push_back(each.along);
+  }
+  json["looks"] = Json::array();
+  for (const SensorLook& each : record.looks) {
+    for (const double number : {each.from.x(), each.from.y(), each.from.z(), each.azimuth,
+                                each.half_sector, each.range, each.steepest})
+      json["looks"].push_back(number);
   }
   json["unseen"] = Json::array();
   for (const JobStep& dig : record.unseen) {
@@ -243,6 +252,14 @@ JobRecord read_record(const std::string& path) {
   const std::vector<double> barren = object.numbers("barren");
   for (std::size_t i = 0; i + 1 < barren.size(); i += 2)
     record.barren.push_back({barren[i], barren[i + 1]});
+  const std::vector<double> looks = object.numbers("looks");
+  for (std::size_t i = 0; i + 6 < looks.size(); i += 7) {
+    record.looks.push_back({{looks[i], looks[i + 1], looks[i + 2]},
+                            looks[i + 3],
+                            looks[i + 4],
+                            looks[i + 5],
+                            looks[i + 6]});
+  }
   for (JsonObject& each : object.objects("unseen")) {
     record.unseen.push_back(read_step(std::move(each)));
   }

@@ -12,6 +12,7 @@
 #include "job/job_ground.hpp"
 #include "job/job_learning.hpp"
 #include "job/lane_view.hpp"
+#include "job/lookout.hpp"
 
 /// @file
 /// What a job remembers beside its ground, and its file. Private to the project.
@@ -35,9 +36,11 @@ struct JobRecord {
   int passes_here = 0;                ///< along the floor from this station
   int fruitless_digs = 0;             ///< digs for volume in succession that lifted little
   int fruitless = 0;                  ///< finishing passes in succession that lifted little
-  std::vector<DigStart> barren;  ///< digs from this station that lifted much less than foretold
-  double truck_load = 0.0;       ///< in the present truck [kg]
-  int trucks = 1;                ///< so far
+  std::vector<DigStart> barren;   ///< digs from this station that lifted much less than foretold
+  std::vector<SensorLook> looks;  ///< of the last scan that told its sensor
+  double carried = 0.0;           ///< loose, in the bucket since the last dump [m^3]
+  double truck_load = 0.0;        ///< in the present truck [kg]
+  int trucks = 1;                 ///< so far
   JobLearning learning;
   JobProgress progress;  ///< what is counted; what is measured of the ground is left out
 };

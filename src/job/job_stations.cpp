@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/angles.hpp"
+#include <Eigen/Geometry>
 
 namespace excavplan {
 namespace {
@@ -20,11 +20,11 @@ constexpr double overlap = 0.25;        // of what is dug from two places in suc
 constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.04;     // to the ends of the design, likewise [m]
 constexpr double lane_overlap = 0.1;    // of two lanes [m]
+constexpr double standing_step = 0.2;   // of the ground under the tracks that is looked at [m]
+constexpr double beside_edge = 0.6;     // of tracks that stand beside the design [m]
 constexpr double batter_step = 0.3;     // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
-constexpr double beside_edge = 0.6;      // of tracks that stand beside the design [m]
-constexpr double beyond_near_end = 6.0;  // of the swing axis of a machine that looks at it [m]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
@@ -48,14 +48,19 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
   return groups;
 }
 
-/// The places under the tracks of a machine at a station, a cell apart.
+/// The cells of a grid under the tracks of a machine at a station, and so far around it.
 template <typename Visit>
 void for_each_under(const JobFrame& frame, const JobStation& station, const Machine& machine,
-                    const HeightMap& grid, Visit visit) {
-  const double half = 0.5 * machine.undercarriage_width();
-  for (double x = -machine.track_front; x <= machine.track_front; x += grid.cell_size) {
-    for (double y = -half; y <= half; y += grid.cell_size) {
-      const Eigen::Vector2d at = frame.place(station.along + x, station.beside + y);
+                    const HeightMap& grid, double around, Visit visit) {
+  const double front = machine.track_front + around;
+  const double half = 0.5 * machine.undercarriage_width() + around;
+  const Eigen::Rotation2Dd turn(station.turned);
+  const auto steps = [](double length) { return std::ceil(length / standing_step); };
+  for (double i = -steps(front); i <= steps(front); ++i) {
+    for (double k = -steps(half); k <= steps(half); ++k) {
+      const Eigen::Vector2d off =
+          turn * Eigen::Vector2d(front * i / steps(front), half * k / steps(half));
+      const Eigen::Vector2d at = frame.place(station.along + off.x(), station.beside + off.y());
       visit(cell_at(grid, at.x(), at.y()));
     }
   }
@@ -97,25 +102,19 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   return stations;
 }
 
-std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& settings,
-                                     const JobMap& map) {
-  const Machine& machine = settings.site.machine;
-  const double half = 0.5 * machine.undercarriage_width();
-  const auto is_free = [&](const JobStation& station) {
-    bool free = true;
-    for_each_under(frame, station, machine, map.target, [&](const std::optional<Cell>& cell) {
-      free &= cell && std::isnan(map.target.z(cell->row, cell->col)) &&
-              !map.dump(cell->row, cell->col) &&
-              map.forbidden(cell->row, cell->col) == -std::numeric_limits<double>::infinity();
-    });
-    return free;
-  };
-  // To the left first: the cab, with what scans, is then nearer to the edge.
-  for (const double side : {frame.left + beside_edge + half, frame.right - beside_edge - half}) {
-    const JobStation beside = {frame.near + beyond_near_end, side, {}, pi};
-    if (is_free(beside)) return beside;
-  }
-  return std::nullopt;
+bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& machine,
+               const JobMap& map) {
+  bool free = true;
+  const HeightMap& target = map.target;
+  for_each_under(frame, station, machine, target, beside_edge, [&](const auto& cell) {
+    free &= !cell || std::isnan(target.z(cell->row, cell->col));
+  });
+  if (!free) return false;
+  for_each_under(frame, station, machine, target, 0.0, [&](const auto& cell) {
+    free &= cell && !map.dump(cell->row, cell->col) &&
+            map.forbidden(cell->row, cell->col) == -std::numeric_limits<double>::infinity();
+  });
+  return free;
 }
 
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,
@@ -124,7 +123,7 @@ BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain
   BasePose base = {place.x(), place.y(), 0.0, frame.heading + station.turned};
   double sum = 0.0;
   int known = 0;
-  for_each_under(frame, station, machine, ground.bank, [&](const std::optional<Cell>& cell) {
+  for_each_under(frame, station, machine, ground.bank, 0.0, [&](const auto& cell) {
     const double z = cell ? ground.bank.z(cell->row, cell->col) : std::nan("");
     if (std::isnan(z)) return;
     sum += z + ground.loose(cell->row, cell->col);

@@ -30,10 +30,10 @@ struct JobStation {
 /// place, the machine moves aside before it goes back.
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
 
-/// A place beside the design that faces its near end, to see the floor which the edge hides from
-/// where it was dug; nothing if the machine can stand on neither side.
-std::optional<JobStation> lookout_of(const JobFrame& frame, const JobSettings& settings,
-                                     const JobMap& map);
+/// Whether the machine has ground under its tracks there, not too near to the design and off the
+/// places for soil and what must not be touched.
+bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& machine,
+               const JobMap& map);
 
 /// The part of the design that is worked on from so far along the line, from the swing axis [m].
 struct WorkRange {

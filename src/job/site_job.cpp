@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include <excavplan/planning/dig_cycle.hpp>
+
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "job/dump_place.hpp"
@@ -26,6 +28,8 @@ constexpr double allowance = 0.15;      // over the design, in tolerances: what 
 constexpr int most_passes = 8;          // along the floor from one station
 constexpr int most_fruitless = 3;       // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 5;  // likewise of digs for volume
+constexpr double off_wall = 0.05;       // of passes beside it [m]
+constexpr double most_carried = 0.4;    // of a heaped bucket, through a pass
 constexpr double least_mass = 15.0;     // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;     // of what a pass is to take off, else it is fruitless
 constexpr double high_share = 0.8;      // of the tolerance: higher cells call for a pass
@@ -34,9 +38,29 @@ constexpr double heap_share = 1.6;      // likewise of cells of which hardly any
 constexpr double most_heaps = 0.006;    // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
 constexpr double least_seen = 0.99;         // of a finished design
+constexpr double well_seen = 0.996;         // of it, so that no more is looked for
 constexpr double after_stall = 0.7;         // of the depth of a cut
 constexpr double after_success = 1.1;       // likewise
 constexpr double shallowest_cut = 0.06;     // [m]
+
+/// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
+/// the walls: one that stands too far inside would stop them.
+std::vector<double> lanes_of_passes(const std::vector<double>& lanes) {
+  std::vector<double> all;
+  for (const double lane : lanes) {
+    if (!all.empty()) all.push_back(0.5 * (all.back() + lane));
+    all.push_back(lane);
+  }
+  if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
+  return all;
+}
+
+/// Of another end of its cycle.
+void set_cycle(const Machine& machine, StepDig& dig, const CycleOptions& options) {
+  const auto cycle = cycle_of(machine, dig.path, dig.dig, options);
+  dig.dig.cycle_energy = cycle ? cycle->total.energy : dig.dig.cycle_energy;
+  dig.dig.cycle_time = cycle ? cycle->total.time : dig.dig.cycle_time;
+}
 
 /// A scan that tells the ground alone.
 SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
@@ -94,10 +118,9 @@ struct SiteJob::State {
     map = map_of(settings, first.bank);
     frame = frame_of(settings, map);
     stations = stations_of(frame, settings);
-    const auto lookout = lookout_of(frame, settings, map);
-    if (!lookout) return;
     const JobStation last = stations.back();
-    stations.insert(stations.end(), {*lookout, last, *lookout});
+    const JobStation lookout;
+    stations.insert(stations.end(), {lookout, lookout, last, lookout, lookout});
   }
 
   JobProgress progress() const {
@@ -106,9 +129,12 @@ struct SiteJob::State {
 
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
-  JobStep move_step();
+  JobStep move_step(const JobStation& station);
   JobStep leave();
-  bool wants_passes() const;
+  std::optional<JobStation> next_place() const;
+  BasePose base_of(const JobStation& station) const;
+  bool wants_passes(const BasePose& base) const;
+  bool may_keep(const PlannedDig& dig) const;
   JobStep step_of(JobAction what, const std::string& reason = {});
   void end_step(const StepReport& report);
   void end_dig(const JobStep& step, const StepReport& report);
@@ -153,27 +179,28 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   task.near = range.near;
   task.far = range.far;
   task.ends_at_wall = range.ends_at_wall;
-  for (const double lane : stations[record.station].lanes) {
-    // Passes also between two lanes, over the ridges that each leaves in the other.
-    if (finishing && !task.lanes.empty())
-      task.lanes.push_back(0.5 * (task.lanes.back() + lane - at.y()));
+  const std::vector<double>& lanes = stations[record.station].lanes;
+  for (const double lane : finishing ? lanes_of_passes(lanes) : lanes)
     task.lanes.push_back(lane - at.y());
-  }
   task.finishing = finishing;
   task.allowance = allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
+  task.carried = record.carried;
   task.slack = 0.5 * settings.design.tolerance;
   auto dig = best_dig(task);
   if (!dig) return std::nullopt;
+  const bool keeps_load = finishing && may_keep(dig->dig);
+  if (finishing && !keeps_load) set_cycle(machine, *dig, cycle_after(*dump, false));
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = frame.heading - record.base.heading;
   step.lane = dig->lane;
   step.path = std::move(dig->path);
   step.dump = dump->place;
-  if (dump->in_truck) step.truck = record.trucks;
+  step.keeps_load = keeps_load;
+  if (dump->in_truck && !keeps_load) step.truck = record.trucks;
   step.predicted = record.learning.foretell(dig->dig);
   const StepMotion motion = checked_motion(settings, now, step);
   step.warnings = motion.warnings;
@@ -184,16 +211,27 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   return step;
 }
 
-JobStep SiteJob::State::move_step() {
+/// Whether another pass can follow before the bucket is dumped.
+bool SiteJob::State::may_keep(const PlannedDig& dig) const {
+  const double held = record.carried + dig.payload_volume;
+  return !settings.design.truck && held <= most_carried * heaped_capacity(settings.site.machine) &&
+         record.passes_here + 1 < most_passes;
+}
+
+JobStep SiteJob::State::move_step(const JobStation& station) {
   JobStep step = step_of(JobAction::move);
-  step.base = base_at(frame, stations[record.station], ground.expected(), settings.site.machine);
+  step.base = base_of(station);
   return step;
+}
+
+BasePose SiteJob::State::base_of(const JobStation& station) const {
+  return base_at(frame, station, ground.expected(), settings.site.machine);
 }
 
 /// Whether too much of what is within reach lies above the design: on the mean of a cell and its
 /// neighbours, since a single one is as much noise.
-bool SiteJob::State::wants_passes() const {
-  const Eigen::Vector2d at = frame.of({record.base.x, record.base.y});
+bool SiteJob::State::wants_passes(const BasePose& base) const {
+  const Eigen::Vector2d at = frame.of({base.x, base.y});
   const WorkRange range = work_range(frame, settings.site.machine, at.x());
   const std::vector<double>& lanes = stations[record.station].lanes;
   const double half = 0.5 * settings.site.machine.bucket.width_outside;
@@ -226,7 +264,7 @@ bool SiteJob::State::wants_passes() const {
 }
 
 JobStep SiteJob::State::decide() {
-  if (!record.has_arrived) return move_step();
+  if (!record.has_arrived) return move_step(stations[record.station]);
   const bool is_fresh = ground.unseen().empty();
   if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (stations[record.station].is_lookout()) return leave();
@@ -235,29 +273,42 @@ JobStep SiteJob::State::decide() {
     if (auto step = dig_step(false)) return *std::move(step);
   }
   if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
-  if (record.passes_here < most_passes && record.fruitless < most_fruitless && wants_passes()) {
+  if (record.passes_here < most_passes && record.fruitless < most_fruitless &&
+      wants_passes(record.base)) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
   return leave();
 }
 
+/// Where the present station is; nothing if there is nothing to do.
+std::optional<JobStation> SiteJob::State::next_place() const {
+  const JobStation& station = stations[record.station];
+  const JobProgress now = progress();
+  if (station.is_lookout()) {
+    if (now.seen >= well_seen) return std::nullopt;
+    return best_lookout({frame, settings, map, ground.expected(), ground.seen(),
+                         record.looks.empty() ? usual_looks() : record.looks, record.base});
+  }
+  const bool is_again = record.station > 0 && stations[record.station - 1].is_lookout();
+  if (is_again && !wants_passes(base_of(station))) return std::nullopt;
+  return station;
+}
+
 /// To the next place from which there is something to do, or the end.
 JobStep SiteJob::State::leave() {
   const JobProgress now = progress();
-  if (now.is_finished) return step_of(JobAction::stop, "finished");
-  const bool is_idle =
-      record.passes_here == 0 && record.station > 0 && stations[record.station - 1].is_lookout();
-  while (!is_idle && record.station + 1 < stations.size()) {
+  while (!(now.is_finished && now.seen >= well_seen) && record.station + 1 < stations.size()) {
     ++record.station;
-    const bool looks = stations[record.station].is_lookout();
-    if (looks && now.seen >= least_seen) continue;
+    const auto place = next_place();
+    if (!place) continue;
     record.passes_here = 0;
     record.fruitless = 0;
     record.fruitless_digs = 0;
     record.barren.clear();
-    record.wants_scan = looks;
-    return move_step();
+    record.wants_scan = place->is_lookout();
+    return move_step(*place);
   }
+  if (now.is_finished) return step_of(JobAction::stop, "finished");
   const bool has_shape =
       now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
   return step_of(JobAction::stop,
@@ -296,6 +347,10 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
     record.deepest_cut = std::max(shallowest_cut, after_stall * record.deepest_cut);
     record.wants_scan = true;
   }
+  const double volume = report.payload_mass && record.planned->payload_mass > 0.0
+                            ? lifted * record.planned->payload_volume / record.planned->payload_mass
+                            : record.planned->payload_volume;
+  record.carried = step.keeps_load ? record.carried + std::max(0.0, volume) : 0.0;
   if (step.truck) {
     record.truck_load += lifted;
     if (record.truck_load >= settings.design.truck->target_mass) {
@@ -317,7 +372,11 @@ void SiteJob::State::end_step(const StepReport& report) {
     record.has_arrived = true;
     ++record.progress.moves;
   }
-  if (report.scan) take_scan(report);
+  if (report.scan) {
+    auto looks = looks_of(*report.scan, record.base);
+    if (!looks.empty()) record.looks = std::move(looks);
+    take_scan(report);
+  }
   record.last_step = step.id;
   record.present.reset();
   record.planned.reset();

@@ -24,6 +24,7 @@ constexpr double room_beyond = 2.0;  // of a view beyond the work, for the bucke
 constexpr double room_beside = 2.0;  // of a view beside the line [m]
 constexpr double start_step = 0.4;   // between places where digs may begin [m]
 constexpr double least_excess = 0.015;  // of soil that is worth a dig [m]
+constexpr double least_ridge = 0.004;   // likewise of a finishing pass: it may lie at a wall alone
 constexpr double too_deep_price = 4.0;  // of soil taken below the design, over that of the design
 constexpr double spill_price = 2.0;     // of soil spilled beside design and dump areas, likewise
 constexpr std::size_t most_confirmed = 8;  // digs whose ground is looked at
@@ -47,6 +48,7 @@ constexpr double wall_to = 0.12;        // likewise [m]
 constexpr double high_wall = 0.03;      // of that soil, to be cut before all else [m]
 constexpr double wall_worth = 1.0;      // of that soil, beyond that of other soil
 constexpr double shortest_drag = 0.2;   // [m]
+constexpr double steepest_carrying = 0.45;  // of a bucket's floor on which soil stays [rad]
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
 struct Attitude {
@@ -107,7 +109,7 @@ class StepSearch {
                    task.density_percent),
         hard_(machine_, with_strength(task.settings.site.soil, task.hard_factor),
               task.density_percent),
-        capacity_(heaped_capacity(machine_)) {
+        capacity_(heaped_capacity(machine_) - task.carried) {
     for (const double lane : task.lanes) {
       lanes_.emplace_back(LaneView(task.ground, task.map, dig_line(task.base, 0.0, lane), extent(),
                                    machine_.bucket.width_outside),
@@ -293,7 +295,8 @@ class StepSearch {
     if (std::isnan(lane.ground(start) - lane.floor(start))) return false;
     const double first = view.x(0);
     const auto col = static_cast<Index>((start - start_step - first) / view.surface().cell_size);
-    return col > 0 && col < view.columns() && lane.excess(col) > least_excess;
+    return col > 0 && col < view.columns() &&
+           lane.excess(col) > (task_.finishing ? least_ridge : least_excess);
   }
 
   struct DragStart {
@@ -324,6 +327,7 @@ class StepSearch {
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
     if (is_barren(task_.lanes[lane], start)) return;
+    if (task_.carried > 0.0 && parameters.penetration_angle > steepest_carrying) return;
     const Lane& at = lanes_[lane];
     const GroundProfile& ground = task_.finishing && !at.has_bank_at(start) ? at.mean : at.ground;
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
@@ -336,12 +340,7 @@ class StepSearch {
     });
   }
 
-  CycleOptions cycle() const {
-    CycleOptions options;
-    options.swing = task_.dump.swing;
-    options.dump_height = task_.dump.height;
-    return options;
-  }
+  CycleOptions cycle() const { return cycle_after(task_.dump, task_.finishing); }
 
   double cost(const PlannedDig& dig) const {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
@@ -412,6 +411,14 @@ SoilKind with_strength(SoilKind soil, double factor) {
   soil.cohesion_loosest *= factor;
   soil.cone_index_reference *= factor;
   return soil;
+}
+
+CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load) {
+  CycleOptions options;
+  options.swing = dump.swing;
+  options.dump_height = dump.height;
+  options.keeps_load = keeps_load;
+  return options;
 }
 
 std::optional<StepDig> best_dig(const StepTask& task) { return StepSearch(task).run(); }

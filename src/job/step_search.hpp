@@ -29,7 +29,8 @@ struct StepTask {
   double far = 0.0;                     ///< to the farthest [m]
   bool ends_at_wall = false;            ///< there, the design ends
   double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
-  bool finishing = false;         ///< along the floor, for its shape
+  bool finishing = false;         ///< along the floor, for its shape; the load is kept
+  double carried = 0.0;           ///< loose, in the bucket [m^3]
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
   double density_percent = 50.0;  ///< of the bank, as believed
   double strength_factor = 1.0;   ///< on the soil's strength, as believed
@@ -50,6 +51,9 @@ struct StepDig {
 
 /// @return nothing if no dig gains anything
 std::optional<StepDig> best_dig(const StepTask& task);
+
+/// What follows the dig: back to the next one with the load, or over the dump.
+CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load);
 
 /// The same soil, so many times as strong.
 SoilKind with_strength(SoilKind soil, double factor);

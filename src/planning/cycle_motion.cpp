@@ -240,6 +240,10 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
   way.add_dig(dig);
   if (options.whole_cycle) {
     way.dig_is_done();
+    if (options.cycle.keeps_load) {
+      if (auto stop = way.go(DigPhase::back, dig.poses.front().joints, false)) return *stop;
+      return way.take();
+    }
     const JointAngles clear = way.joints().head<3>();
     const double height = std::max(options.cycle.dump_height, pin_height(machine, clear));
     const JointAngles full = over_dump(machine, clear, height, options.dump_radius);

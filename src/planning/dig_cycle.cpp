@@ -18,7 +18,8 @@
 namespace excavplan {
 namespace {
 
-constexpr int steps = 16;  // of a movement to one pose; ours
+constexpr int steps = 16;            // of a movement to one pose; ours
+constexpr double over_ground = 0.3;  // of a loaded bucket that goes back to dig; ours [m]
 
 using Poses = std::vector<DigPose>;
 
@@ -95,7 +96,9 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
   const FrontLoad loaded(machine, dig.payload_mass), empty(machine);
   Poses lift = lift_of(path);
   const JointAngles clear = lift.back().joints;
-  const double height = std::max(options.dump_height, pin_height(machine, clear));
+  const double clear_height = pin_height(machine, clear);
+  const double height =
+      options.keeps_load ? clear_height + over_ground : std::max(options.dump_height, clear_height);
   go(lift, raised(machine, clear, height));
   const JointAngles full = lift.back().joints, open = opened(machine, full);
   const Trajectory up = timed(machine, lift);
@@ -107,10 +110,14 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
   DigCycle cycle;
   cycle.dig = {dig.energy, dig.duration};
   cycle.lift = move(loaded, lift, up);
-  cycle.swing = swing_by(*machine.swing, loaded.inertia(clear), options.swing);
-  cycle.dump = move(empty, full, open);
-  cycle.back = swing_by(*machine.swing, empty.inertia(open), options.swing);
-  cycle.lower = move(empty, open, path.poses.front().joints);
+  if (options.keeps_load) {
+    cycle.lower = move(loaded, full, path.poses.front().joints);
+  } else {
+    cycle.swing = swing_by(*machine.swing, loaded.inertia(clear), options.swing);
+    cycle.dump = move(empty, full, open);
+    cycle.back = swing_by(*machine.swing, empty.inertia(open), options.swing);
+    cycle.lower = move(empty, open, path.poses.front().joints);
+  }
   cycle.rest.time = options.rest_of_cycle;
   cycle.total.time = cycle.dig.time + std::max(cycle.lift.time, clear_at + cycle.swing.time) +
                      cycle.dump.time + std::max(cycle.back.time, cycle.lower.time) +

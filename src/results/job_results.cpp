@@ -47,7 +47,9 @@ Json job_step_json(const JobStep& step) {
                {"predicted", nullptr}};
   if (digs) {
     json["path"] = path_json(step);
-    json["dump"] = {{"x_m", step.dump.x()}, {"y_m", step.dump.y()}, {"z_m", step.dump.z()}};
+    json["keeps_load"] = step.keeps_load;
+    if (!step.keeps_load)
+      json["dump"] = {{"x_m", step.dump.x()}, {"y_m", step.dump.y()}, {"z_m", step.dump.z()}};
     json["predicted"] = predicted_json(step.predicted);
   }
   json["truck"] = step.truck ? Json(*step.truck) : Json();

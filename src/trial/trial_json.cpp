@@ -28,6 +28,7 @@ Json dig_json(const TrialStep& at) {
   if (at.step.truck) line["truck"] = *at.step.truck;
   line["lane_m"] = at.step.lane;
   line["swung_rad"] = at.step.swung;
+  line["keeps_load"] = at.step.keeps_load;
   line["dump"] = {{"x", at.step.dump.x()}, {"y", at.step.dump.y()}, {"z", at.step.dump.z()}};
   return line;
 }

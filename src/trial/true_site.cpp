@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <excavplan/base/error.hpp>
@@ -92,6 +93,13 @@ CycleShare cycle_cost(const Machine& machine, const DigPath& path, const DigResu
   return cycle ? cycle->total : CycleShare{planned.energy, planned.duration};
 }
 
+/// With all that the bucket then holds.
+DigResult with_load(DigResult dig, double volume) {
+  if (dig.payload_volume > 0.0) dig.payload_mass *= volume / dig.payload_volume;
+  dig.payload_volume = volume;
+  return dig;
+}
+
 }  // namespace
 
 struct TrueSite::State {
@@ -151,7 +159,12 @@ struct TrueSite::State {
   }
 
   TrueStep dig(const JobStep& job);
-  void dump(const JobStep& job, const DigResult& dig, const Vector2d& at);
+  void fill(const DigResult& dig, const Vector2d& end);
+  void dump(const JobStep& job, const Vector2d& at);
+  /// Dry mass of so much loose soil [kg].
+  double solids_of(double volume) const {
+    return volume * site.soil.specific_gravity * water_density / (1.0 + site.soil.void_ratio_loose);
+  }
   TrueStep move(const JobStep& job);
   Scan scan();
   void take_scan(TrueStep& done) {
@@ -171,6 +184,7 @@ struct TrueSite::State {
   std::uint64_t step = 0;   ///< steps done
   std::uint64_t scans = 0;  ///< made
   SolidsLedger solids;
+  double held = 0.0;     ///< loose, by the bucket [m^3]
   ArrayXXd seen_at;      ///< when a cell was last seen [s]; NaN: never
   ArrayXXd seen_height;  ///< of the true surface when a cell was last seen; NaN: never [m]
 };
@@ -197,11 +211,16 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
       dig_along(*simulator, machine, ground, {line, soil_voids(site.soil, density), path});
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
-  require_reach(job, dump_at);
-  dump(job, dug, dump_at);
+  fill(dug, line.place(path.poses.back().bucket.x, 0.0));
+  const double load = held;
+  if (!job.keeps_load) {
+    require_reach(job, dump_at);
+    dump(job, dump_at);
+  }
   const Solids after(ground, site.soil);
   solids.cut += after.cut_since(before.bank.z, before.bank_void_ratio);
   solids.lying += after.lying_since(before.loose);
+  solids.held = solids_of(held);
   if (site.density.gradient != 0.0) set_void_ratios(site.density, site.soil, ground);
 
   const double from = line.heading + std::atan2(job.lane, path.poses.back().bucket.x);
@@ -209,7 +228,8 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   CycleOptions options_of_cycle;
   options_of_cycle.swing = turned(to - from);
   options_of_cycle.dump_height = std::max(0.0, job.dump.z() - real.z);
-  const CycleShare cost = cycle_cost(machine, path, dug, options_of_cycle);
+  options_of_cycle.keeps_load = job.keeps_load;
+  const CycleShare cost = cycle_cost(machine, path, with_load(dug, load), options_of_cycle);
   TrueStep done;
   done.time = cost.time;
   done.energy = cost.energy;
@@ -223,15 +243,24 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   return done;
 }
 
-void TrueSite::State::dump(const JobStep& job, const DigResult& dig, const Vector2d& at) {
-  if (!(dig.payload_volume > 0.0)) return;
+/// What was dug comes on top of what the bucket holds.
+void TrueSite::State::fill(const DigResult& dig, const Vector2d& end) {
+  held += dig.payload_volume;
+  const double over = held - heaped_capacity(machine);
+  if (!(over > 0.0)) return;
+  heap_soil(ground, site.soil, density, end, over);
+  held -= over;
+}
+
+void TrueSite::State::dump(const JobStep& job, const Vector2d& at) {
+  const double volume = std::exchange(held, 0.0);
+  if (!(volume > 0.0)) return;
   const auto& truck = site.known.job.truck;
   if (job.truck && truck && is_inside(truck->bed, at)) {
-    solids.hauled += dig.payload_volume * site.soil.specific_gravity * water_density /
-                     (1.0 + site.soil.void_ratio_loose);
+    solids.hauled += solids_of(volume);
     return;
   }
-  heap_soil(ground, site.soil, density, at, dig.payload_volume);
+  heap_soil(ground, site.soil, density, at, volume);
 }
 
 TrueStep TrueSite::State::move(const JobStep& job) {

@@ -8,11 +8,13 @@
 #include <excavplan/job/job_motion.hpp>
 #include <excavplan/trial/job_score.hpp>
 
+#include "base/angles.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
 #include "job/lane_view.hpp"
+#include "job/lookout.hpp"
 #include "job/trench_job.hpp"
 #include "support/errors.hpp"
 
@@ -112,31 +114,114 @@ TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
   }
 }
 
-/// Of a machine along the trench.
-bool stands_on(const Machine& machine, const Eigen::Vector2d& machine_at,
-               const Eigen::Vector2d& place) {
-  const Eigen::Vector2d off = (place - machine_at).cwiseAbs();
-  return off.x() < machine.track_front && off.y() < 0.5 * machine.undercarriage_width();
-}
+/// A hand-made job that is dug, with a corner of its floor that was not seen.
+struct HiddenCorner : HandMadeJob {
+  HiddenCorner() {
+    const JobMap of_level = map();
+    seen = Eigen::ArrayXXd::Zero(ground.bank.z.rows(), ground.bank.z.cols());
+    for_each_cell(of_level.target.z, [&](Cell at) {
+      const double target = of_level.target.z(at.row, at.col);
+      if (std::isnan(target)) return;
+      dug.bank.z(at.row, at.col) = target;
+      const bool is_hidden = ground.bank.x(at.col) < 0.4 && ground.bank.y(at.row) < -0.1;
+      if (is_hidden) seen(at.row, at.col) = std::nan("");
+    });
+  }
+  std::optional<JobStation> best(const std::vector<SensorLook>& looks) const {
+    const JobFrame lies = frame();
+    const JobMap of_level = map();
+    return best_lookout({lies, settings, of_level, dug, seen, looks, {-4.0, 0.0, 0.0, 0.0}});
+  }
 
-TEST(JobStations, TheLookoutIsBesideTheDesignOffTheSpoil) {
-  HandMadeJob job;  // the windrow is on the left
-  const auto right = lookout_of(job.frame(), job.settings, job.map());
+  Terrain dug = ground;
+  Eigen::ArrayXXd seen;
+};
+
+TEST(Lookout, IsBesideTheDesignOffTheSpoil) {
+  HiddenCorner job;  // the windrow is on the left
+  const auto right = job.best(usual_looks());
   ASSERT_TRUE(right);
   EXPECT_TRUE(right->is_lookout());
+  const Machine& machine = job.settings.site.machine;
   const Eigen::Vector2d stands = job.frame().place(right->along, right->beside);
-  for (double x = -6.0; x <= 14.0; x += 0.1) {
-    for (const double y : {-0.5, 0.5, 1.5, 3.0})
-      EXPECT_FALSE(stands_on(job.settings.site.machine, stands, {x, y}));
+  const Eigen::Rotation2Dd turn(job.frame().heading + right->turned);
+  for (double x = -1.0; x <= 1.0; x += 0.1) {
+    for (double y = -1.0; y <= 1.0; y += 0.1) {
+      const Eigen::Vector2d track =
+          stands +
+          turn * Eigen::Vector2d(x * machine.track_front, 0.5 * y * machine.undercarriage_width());
+      const Eigen::Vector2d off((track - Eigen::Vector2d(5.0, 0.0)).cwiseAbs() -
+                                Eigen::Vector2d(5.0, 0.5));
+      EXPECT_GT(off.cwiseMax(0.0).norm(), 0.5) << track.transpose();
+      EXPECT_FALSE(track.y() > 1.55 && track.x() > -5.95) << track.transpose();
+    }
   }
-  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(-6.0, -6.0, 14.0, -1.5)}};
-  const auto left = lookout_of(job.frame(), job.settings, job.map());
-  ASSERT_TRUE(left);
-  EXPECT_GT(left->beside, 0.0);
-  EXPECT_LT(right->beside, 0.0);
-  job.settings.design.obstacles = {{"pole", box(8.0, 2.0, 8.2, 2.2), 4.0},
-                                   {"shed", box(0.0, 1.0, 9.0, 4.0), 3.0}};
-  EXPECT_FALSE(lookout_of(job.frame(), job.settings, job.map()));
+  job.settings.design.obstacles = {{"shed", box(-9.0, -8.0, 9.0, -1.0), 3.0},
+                                   {"fence", box(-11.0, -1.0, -0.5, 1.5), 2.0}};
+  EXPECT_FALSE(job.best(usual_looks()));
+}
+
+/// Share of the corner's floor that a look sees past the edges of the trench, from a place.
+double share_of_corner(const HiddenCorner& job, const SensorLook& look, const JobStation& place) {
+  const Eigen::Vector2d at = job.frame().place(place.along, place.beside);
+  const double heading = job.frame().heading + place.turned;
+  const Eigen::Vector2d eye = at + Eigen::Rotation2Dd(heading) * look.from.head<2>();
+  int open = 0, all = 0;
+  for (double x = 0.05; x < 0.4; x += 0.05) {
+    for (double y = -0.45; y < -0.1; y += 0.05) {
+      ++all;
+      const Eigen::Vector2d way = Eigen::Vector2d(x, y) - eye;
+      const double off = std::atan2(way.y(), way.x()) - heading - look.azimuth;
+      if (std::abs(std::remainder(off, 2.0 * pi)) > look.half_sector) continue;
+      if (std::atan2(look.from.z() + 0.5, way.norm()) > look.steepest) continue;
+      // Where the ray is half a metre over the floor, it must be within the trench.
+      const Eigen::Vector2d edge = Eigen::Vector2d(x, y) - way * 0.5 / (look.from.z() + 0.5);
+      if (edge.x() > 0.0 && edge.x() < 10.0 && std::abs(edge.y()) < 0.5) ++open;
+    }
+  }
+  return static_cast<double>(open) / all;
+}
+
+TEST(Lookout, SeesFromThereWhatIsHiddenFromTheLastPlaceOfTheJob) {
+  const HiddenCorner job;
+  const JobStation last = stations_of(job.frame(), job.settings).back();
+  for (const SensorLook& look :
+       {usual_looks().front(), SensorLook{{0.9, -0.2, 3.0}, -1.05, 0.55, 12.0, 0.8}}) {
+    const auto place = job.best({look});
+    ASSERT_TRUE(place);
+    EXPECT_LT(share_of_corner(job, look, last), 0.05);
+    EXPECT_GT(share_of_corner(job, look, *place), 0.2);
+  }
+}
+
+TEST(Lookout, IsNoneIfNothingIsHidden) {
+  HiddenCorner job;
+  job.seen.setZero();
+  EXPECT_FALSE(job.best(usual_looks()));
+}
+
+TEST(Lookout, AScanTellsWhereItsSensorIsAndWhatItSees) {
+  const BasePose base = {3.0, -2.0, 0.4, 0.7};
+  const Eigen::Rotation2Dd turn(base.heading);
+  auto cloud = std::make_shared<Cloud>();
+  const Eigen::Vector2d eye = Eigen::Vector2d(base.x, base.y) + turn * Eigen::Vector2d(0.6, 0.7);
+  cloud->sensor_origin = Eigen::Vector3d(eye.x(), eye.y(), base.z + 3.0);
+  for (double azimuth = -1.2; azimuth <= 0.2; azimuth += 0.01) {
+    for (double range = 4.0; range <= 10.0; range += 0.1) {
+      const double at = base.heading + azimuth;
+      cloud->points.emplace_back(eye.x() + range * std::cos(at), eye.y() + range * std::sin(at),
+                                 base.z);
+    }
+  }
+  Scan scan;
+  scan.clouds = {cloud, std::make_shared<Cloud>()};
+  const auto looks = looks_of(scan, base);
+  ASSERT_EQ(looks.size(), 1U);
+  EXPECT_LT((looks[0].from - Eigen::Vector3d(0.6, 0.7, 3.0)).norm(), 1e-9);
+  EXPECT_NEAR(looks[0].azimuth, -0.5, 0.02);
+  EXPECT_NEAR(looks[0].half_sector, 0.7, 0.03);
+  EXPECT_NEAR(looks[0].range, 10.0, 0.2);
+  EXPECT_NEAR(looks[0].steepest, std::atan2(3.0, 4.0), 0.02);
 }
 
 TEST(DumpPlace, IsInTheAreaAndAwayFromTheTrench) {
@@ -231,17 +316,27 @@ TEST(LaneView, WhatIsPushedAsideIsNotOfThePassThatPushedIt) {
   EXPECT_NEAR(view.change(patch, {0.0, 5.0}).at_end, 0.5 * change.gained, 0.01 * under);
 }
 
-TEST(JobRecord, ComesBackWithThePlacesThatAreBarren) {
+TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   const TemporaryFolder folder;
   JobRecord record;
   record.barren = {{0.12, 5.4}, {-0.12, 4.6}};
   record.passes_here = 3;
+  record.carried = 0.07;
+  record.looks = {{{0.6, 0.7, 3.0}, 0.1, 0.5, 12.0, 0.8}, usual_looks().front()};
+  record.present = JobStep{};
+  record.present->keeps_load = true;
   save_record(folder.file(""), record);
   const JobRecord read = load_record(folder.file(""));
   ASSERT_EQ(read.barren.size(), 2U);
   EXPECT_EQ(read.barren[1].lane, -0.12);
   EXPECT_EQ(read.barren[1].along, 4.6);
   EXPECT_EQ(read.passes_here, 3);
+  EXPECT_EQ(read.carried, 0.07);
+  EXPECT_TRUE(read.present->keeps_load);
+  ASSERT_EQ(read.looks.size(), 2U);
+  EXPECT_EQ(read.looks[0].from, Eigen::Vector3d(0.6, 0.7, 3.0));
+  EXPECT_EQ(read.looks[0].steepest, 0.8);
+  EXPECT_EQ(read.looks[1].half_sector, pi);
 }
 
 TEST(JobGround, WhatADigChangedIsNotSeenUntilAScanSeesIt) {
@@ -292,6 +387,26 @@ TEST(JobMotion, TheToothStaysOnItsLane) {
   EXPECT_LT(dumped_at, 0.02);
   EXPECT_NEAR(motion.points.front().swing.angle, motion.points.back().swing.angle, 1e-6);
   EXPECT_LT((motion.points.front().joints - motion.points.back().joints).norm(), 1e-6);
+}
+
+TEST(JobMotion, ALoadThatIsKeptGoesBackWithoutADump) {
+  const HandMadeJob job;
+  JobStep step;
+  step.id = 1;
+  step.what = JobAction::finish;
+  step.base = {2.0, 0.0, 0.0, 0.0};
+  step.path = std::get<DigPath>(
+      make_dig_path(job.settings.site.machine, {0.7, 0.3, 1.2}, 6.2, [](double) { return 0.0; }));
+  step.keeps_load = true;
+  auto made = motion_of(job.settings, job.ground, step);
+  const auto* motion = std::get_if<Trajectory>(&made);
+  ASSERT_NE(motion, nullptr) << std::get<BlockedWay>(made).message;
+  EXPECT_EQ(motion->points.back().phase, DigPhase::back);
+  for (const TrajectoryPoint& point : motion->points) {
+    EXPECT_NE(point.phase, DigPhase::swing);
+    EXPECT_NE(point.phase, DigPhase::dump);
+  }
+  EXPECT_LT((motion->points.front().joints - motion->points.back().joints).norm(), 1e-6);
 }
 
 TEST(JobMotion, ATruckInTheWayBlocksIt) {

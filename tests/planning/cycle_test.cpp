@@ -113,6 +113,19 @@ TEST_F(Cycle, SwingThatDoesNotReachItsRateAcceleratesHalfTheWay) {
   EXPECT_EQ(cycle(0.0, by_angle(0.0)).swing.time, 0.0);
 }
 
+TEST_F(Cycle, AKeptLoadIsNeitherSwungNorDumped) {
+  CycleOptions keeps;
+  keeps.keeps_load = true;
+  const DigCycle kept = cycle(100.0, keeps), whole = cycle(100.0);
+  EXPECT_EQ(kept.swing.energy + kept.dump.energy + kept.back.energy, 0.0);
+  EXPECT_EQ(kept.dump.time, 0.0);
+  EXPECT_EQ(kept.dig.energy, whole.dig.energy);
+  EXPECT_LT(kept.lift.energy, whole.lift.energy);
+  EXPECT_GT(kept.lift.energy + kept.lower.energy, 0.0);
+  EXPECT_LT(kept.total.energy, whole.total.energy);
+  EXPECT_LT(kept.total.time, whole.total.time);
+}
+
 TEST_F(Cycle, SwingToTheRightCostsAsMuch) {
   const DigCycle left = cycle(300.0, by_angle(1.2)), right = cycle(300.0, by_angle(-1.2));
   EXPECT_EQ(right.total.energy, left.total.energy);

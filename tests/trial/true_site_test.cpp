@@ -78,6 +78,39 @@ TEST(TrueSite, SolidsAreConserved) {
   EXPECT_NEAR(solids.cut, solids.lying + solids.hauled, 1e-9 * solids.cut);
 }
 
+TEST(TrueSite, ALoadIsKeptUntilItIsDumped) {
+  const HiddenSite site = SiteAtOrigin().read();
+  TrueSite truth(site, zx120());
+  JobStep first = dig_step();
+  first.keeps_load = true;
+  first.dump = {0.0, 90.0, 2.0};  // is not looked at
+  truth.execute(first);
+  const SolidsLedger kept = truth.solids();
+  EXPECT_GT(kept.held, 50.0);
+  EXPECT_NEAR(kept.cut, kept.lying + kept.held, 1e-9 * kept.cut);
+  EXPECT_NEAR(height_at(truth.ground().surface(), 2.5, 3.5), 0.0, 1e-9);
+  truth.execute(dig_step(5.0));
+  const SolidsLedger& dumped = truth.solids();
+  EXPECT_EQ(dumped.held, 0.0);
+  EXPECT_NEAR(dumped.cut, dumped.lying, 1e-9 * dumped.cut);
+  EXPECT_GT(height_at(truth.ground().surface(), 2.5, 3.5), 0.2);
+}
+
+TEST(TrueSite, WhatTheBucketCannotHoldFallsBack) {
+  const HiddenSite site = SiteAtOrigin().read();
+  TrueSite truth(site, zx120());
+  const double full = heaped_capacity(zx120()) * site.soil.specific_gravity * 1000.0 /
+                      (1.0 + site.soil.void_ratio_loose);
+  for (int i = 0; i < 5; ++i) {
+    JobStep step = dig_step(5.5 - 0.1 * i);
+    step.keeps_load = true;
+    truth.execute(step);
+  }
+  const SolidsLedger& solids = truth.solids();
+  EXPECT_NEAR(solids.held, full, 1e-6 * full);
+  EXPECT_NEAR(solids.cut, solids.lying + solids.held, 1e-9 * solids.cut);
+}
+
 TEST(TrueSite, TheScaleHasItsErrors) {
   SiteAtOrigin folder;
   folder.truth["payload_scale_error"] = 0.04;

@@ -13,6 +13,13 @@ std::string place_text(const BasePose& base) {
          readable(base.heading) + " rad";
 }
 
+std::string dump_text(const JobStep& step) {
+  if (step.keeps_load) return "none: the bucket keeps its load";
+  return "x = " + readable(step.dump.x()) + " m, y = " + readable(step.dump.y()) +
+         " m, z = " + readable(step.dump.z()) + " m" +
+         (step.truck ? ", truck " + std::to_string(*step.truck) : "");
+}
+
 }  // namespace
 
 std::vector<std::string> step_lines(const JobStep& step) {
@@ -25,9 +32,7 @@ std::vector<std::string> step_lines(const JobStep& step) {
   const ForetoldStep& foretold = step.predicted;
   lines.push_back("path         " + path_text(step.path.parameters, step.path.start_x) + ", lane " +
                   readable(step.lane, 2) + " m" + (step.path.meets_floor ? ", to the floor" : ""));
-  lines.push_back("dump         x = " + readable(step.dump.x()) +
-                  " m, y = " + readable(step.dump.y()) + " m, z = " + readable(step.dump.z()) +
-                  " m" + (step.truck ? ", truck " + std::to_string(*step.truck) : ""));
+  lines.push_back("dump         " + dump_text(step));
   lines.push_back("foretold     " + readable(foretold.payload_mass) + " kg, " +
                   readable(foretold.energy / 1000.0) + " kJ, " + readable(foretold.time) + " s");
   return lines;

@@ -22,6 +22,8 @@ struct CycleOptions {
   /// bucket is clear of the ground if that is more: over a truck's side of 2.3-2.6 m; ours [m].
   double dump_height = 3.0;
   double rest_of_cycle = 0.0;  ///< waiting time [s]
+  /// The bucket goes back to where a dig begins with its load: no swing, no dump.
+  bool keeps_load = false;
 };
 
 /// What stands for the best digs between two known ones.

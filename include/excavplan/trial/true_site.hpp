@@ -53,6 +53,7 @@ struct SolidsLedger {
   double cut = 0.0;     ///< taken from the bank, by digs and by slides
   double lying = 0.0;   ///< gained by the loose soil of the site
   double hauled = 0.0;  ///< by trucks
+  double held = 0.0;    ///< by the bucket, since it was dumped last
 };
 
 /// The true ground and the machine on it.
@@ -60,7 +61,8 @@ struct SolidsLedger {
 /// A dig: the tracking errors shift its path, and the joints follow by inverse kinematics in the
 /// plane of the path; also in a lane, whose front reaches a little farther. The bucket turns as
 /// much as keeps its heel off the ground. The machine digs until it has finished or stalls; what is
-/// then in the bucket is dumped. Where the bank was cut its void ratios are set anew
+/// then in the bucket is dumped, or kept (JobStep::keeps_load); what it cannot hold falls where the
+/// path ends. A load that is carried through a dig changes nothing in it but the lift after it. Where the bank was cut its void ratios are set anew
 /// (set_void_ratios()). The line of a dig and the dump are off as the known pose of the machine is.
 /// Tracks leave no mark, and the ground holds the machine everywhere.
 class TrueSite {
