@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <excavplan/planning/dig_cycle.hpp>
+#include <excavplan/planning/dig_goal.hpp>
 #include <excavplan/trial/job_score.hpp>
 
 #include "base/angles.hpp"

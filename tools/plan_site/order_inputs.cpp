@@ -60,14 +60,20 @@ Surface surface_of(const Scan& scan, const Machine& machine) {
   return survey_surface(scan, *seen.extent, options);
 }
 
-DesignWords words_of(const OrderInputs& inputs) {
+/// All of a trench but its place.
+DesignWords size_of(const OrderInputs& inputs) {
   DesignWords words = of_option("--trench", [&] { return trench_of_size(*inputs.trench); });
+  words.grade = inputs.grade;
+  words.batter = inputs.batter;
+  return words;
+}
+
+DesignWords words_of(const OrderInputs& inputs) {
+  DesignWords words = size_of(inputs);
   if (!inputs.from) usage_error("--from is missing: where the trench begins");
   if (!inputs.heading) usage_error("--heading is missing: where the trench goes from there");
   words.from = parse_point("--from", *inputs.from);
   words.heading = *inputs.heading;
-  words.grade = inputs.grade;
-  words.batter = inputs.batter;
   return words;
 }
 
@@ -243,6 +249,41 @@ Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
   const Surface ground = surface_of(order.first, site.machine);
   order.settings.surface = design_of(inputs, ground);
   return finished(std::move(order), inputs.machine);
+}
+
+GroundErrors errors_of_scan() {
+  GroundErrors errors;
+  errors.height_sd = 0.01;
+  return errors;
+}
+
+PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
+  PlannedCut cut;
+  CutOptions options;
+  options.errors = errors_of_scan();
+  const auto against = [&](const DesignSurface& design, const Surface& ground) {
+    cut.shape = shape_of(design, cut_and_fill(design, ground, options));
+  };
+  if (inputs.site) {
+    const Order order = order_of(inputs, scan);
+    cut.site = order.settings.site;
+    cut.density = read_site_brief(*inputs.site).density;
+    cut.truck = order.settings.design.truck;
+    against(order.settings.surface, surface_of(order.first, cut.site.machine));
+    return cut;
+  }
+  cut.site.machine = machine_named(inputs.machine);
+  cut.site.soil = soil_named(inputs.soil);
+  if (inputs.truck) {
+    cut.truck = of_option("--truck", [&] { return truck_of_text(*inputs.truck); });
+  }
+  if (inputs.trench && !scan.scan) {
+    cut.shape = of_option("--trench", [&] { return shape_on_level_ground(size_of(inputs)); });
+    return cut;
+  }
+  const Surface ground = surface_of(scan_of(scan), cut.site.machine);
+  against(design_of(inputs, ground), ground);
+  return cut;
 }
 
 }  // namespace excavplan::tools

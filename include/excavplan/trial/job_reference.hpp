@@ -10,8 +10,8 @@ namespace excavplan {
 /// What a job costs at its best, by which a planner's cost is judged: per cubic metre of the
 /// design.
 ///
-/// R: best_full_dig() in soil of the mean true density; as many of these as the swollen volume of the
-/// design takes.
+/// R: best_full_dig() in soil of the mean true density; as many of these as the swollen volume of
+/// the design takes.
 ///
 /// B: of each load the rupture of its soil by a wedge of the rake of the lip without weight or
 /// friction of the tool, the lift of soil and links from the middle of the cut over the windrow or
