@@ -15,9 +15,9 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr double idle_sd = 0.25;   // of ln of the idle flow
-constexpr double drive_sd = 0.27;  // of ln of work over fuel: the model makes 0.17 of the fuel
-                                   // work, 0.10 is published for whole excavators
+constexpr double idle_sd = 0.25;      // of ln of the idle flow
+constexpr double drive_sd = 0.27;     // of ln of work over fuel: the model makes 0.17 of the fuel
+                                      // work, 0.10 is published for whole excavators
 constexpr double fill = 0.95;         // of the load of a truck
 constexpr double fill_sd = 0.05;      // of ln of it
 constexpr double unlike_sd = 0.25;    // of ln, for each thing in which a job is not as those played
@@ -207,9 +207,9 @@ JobEstimate estimate_job(const Machine& machine, const SoilKind& soil, const Job
                          const EstimateBasis& basis) {
   constexpr double most = 1e9;
   require_in("estimate: volume [m3]", job.shape.volume.value, 1e-6, most);
-  require_in("estimate: density [%]", job.density.percent, 0.0, 100.0);
-  require_in("estimate: deviation of the density [points]", job.density.sd_percent, 0.0, 100.0);
-  require_in("estimate: load of a truck [kg]", job.truck_mass, 1.0, 1e6);
+  require_in("estimate: `density` [%]", job.density.percent, 0.0, 100.0);
+  require_in("estimate: `density_sd` [points]", job.density.sd_percent, 0.0, 100.0);
+  require_in("estimate: `truck_mass` [kg]", job.truck_mass, 1.0, 1e6);
   require(basis.played.jobs.size() > 1, "estimate: played jobs must be two at least");
   require(machine.engine && machine.swing,
           "estimate: " + machine.name + " states no swing or engine, so no time of a cycle");

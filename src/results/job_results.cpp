@@ -32,11 +32,11 @@ Json predicted_json(const ForetoldStep& foretold) {
           {"energy_kj_interval", {energy[0] / 1000.0, energy[1] / 1000.0}}};
 }
 
-double whole(double value) { return std::ceil(value); }
+Json whole(double value) { return std::llround(std::ceil(value)); }
 
 /// A figure, its interval, and the deviations behind it in per cent of the figure.
 void add_figure(Json& json, const std::string& key, const EstimatedFigure& figure,
-                const std::function<double(double)>& shown) {
+                const std::function<Json(double)>& shown) {
   const auto interval = figure.interval();
   const EstimateSpread& spread = figure.spread;
   json[key] = shown(figure.value);

@@ -49,8 +49,16 @@ void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) 
     };
   };
   declare_words(arguments, inputs, words);
-  arguments.only_if({is({"new", "estimate"}), "it is of plan-site new and estimate"},
+  const auto tells_order = [&inputs] {
+    return inputs.command == "new" || (inputs.command == "estimate" && inputs.folder.empty());
+  };
+  arguments.only_if({tells_order, "it is of plan-site new, and of estimate without a folder"},
                     [&] { declare_order(arguments, inputs.order); });
+  arguments.only_if({is({"new", "estimate"}), "it is of plan-site new and estimate"}, [&] {
+    arguments.option("density", inputs.order.density, Quantity::percent,
+                     "relative density of the ground, with which plans begin (default: 50, or as "
+                     "the site says)");
+  });
   arguments.only_if({is({"estimate"}), "it is of plan-site estimate"},
                     [&] { declare_estimate(arguments, inputs.estimate); });
   arguments.only_if({is({"new", "done", "scan", "estimate"}), "this command takes no scan"},

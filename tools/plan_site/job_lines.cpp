@@ -19,7 +19,8 @@ std::string place_text(const BasePose& base) {
 /// "26 (18 .. 38), sd: played jobs 15 %, density 8 %"
 std::string figure_text(const EstimatedFigure& figure, const std::string& unit, double scale) {
   const auto shown = [&](double value) {
-    return unit.empty() ? readable(std::ceil(value), 6) : readable(scale * value, 3);
+    return unit.empty() ? std::to_string(std::llround(std::ceil(value)))
+                        : readable(scale * value, 3);
   };
   const auto interval = figure.interval();
   const EstimateSpread& spread = figure.spread;
@@ -54,7 +55,7 @@ std::vector<std::string> estimate_lines(const JobEstimate& estimate, const JobOu
           readable(estimate.reference_digs, 3) + " digs of " +
           readable(estimate.dig.payload_mass, 3) + " kg, " +
           readable(estimate.reference_time / 60.0, 3) + " min"};
-  for (const std::string& each : estimate.unlike) lines.push_back("not trusted  " + each);
+  for (const std::string& each : estimate.unlike) lines.push_back("NOT TRUSTWORTHY: " + each);
   return lines;
 }
 

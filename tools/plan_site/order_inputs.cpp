@@ -44,6 +44,11 @@ void add_texts(Arguments& arguments, const char* name, const char* placeholder,
   arguments.add(entry);
 }
 
+void name_kinds(const OrderInputs& inputs, SiteSettings& site) {
+  site.machine = of_option("--machine", [&] { return machine_named(inputs.machine); });
+  site.soil = of_option("--soil", [&] { return soil_named(inputs.soil); });
+}
+
 bool is_raster(const std::string& file) {
   const std::string ending = small_letters(std::filesystem::path(file).extension().string());
   return ending == ".asc" || ending == ".tif" || ending == ".tiff";
@@ -225,9 +230,6 @@ void declare_order(Arguments& arguments, OrderInputs& inputs) {
             "times [m]");
   arguments.option("tolerance", inputs.tolerance, Quantity::length,
                    "of the finished ground, to either side");
-  arguments.option("density", inputs.density, Quantity::percent,
-                   "relative density of the ground, with which plans begin (default: 50, or as "
-                   "the site says)");
   for (const char* alone : {"design", "trench"}) arguments.exclude("site", {alone});
   arguments.exclude("site", {"from", "heading", "grade", "batter", "soil", "machine", "windrow",
                              "heap", "truck", "keep-out", "tolerance", "surface"});
@@ -241,8 +243,7 @@ Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
   }
   Order order;
   SiteSettings& site = order.settings.site;
-  site.machine = machine_named(inputs.machine);
-  site.soil = soil_named(inputs.soil);
+  name_kinds(inputs, site);
   order.settings.density_percent = inputs.density.value_or(order.settings.density_percent);
   order.settings.design = job_of(inputs, site.machine);
   order.first = scan_of(scan);
@@ -272,13 +273,16 @@ PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
     against(order.settings.surface, surface_of(order.first, cut.site.machine));
     return cut;
   }
-  cut.site.machine = machine_named(inputs.machine);
-  cut.site.soil = soil_named(inputs.soil);
+  if (!inputs.trench && !inputs.design) {
+    usage_error("the design is missing: give FOLDER, --site, --trench or --design");
+  }
+  name_kinds(inputs, cut.site);
   if (inputs.truck) {
     cut.truck = of_option("--truck", [&] { return truck_of_text(*inputs.truck); });
   }
   if (inputs.trench && !scan.scan) {
-    cut.shape = of_option("--trench", [&] { return shape_on_level_ground(size_of(inputs)); });
+    const DesignWords words = size_of(inputs);
+    cut.shape = of_option("--trench", [&] { return shape_on_level_ground(words); });
     return cut;
   }
   const Surface ground = surface_of(scan_of(scan), cut.site.machine);
