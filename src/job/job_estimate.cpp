@@ -26,7 +26,7 @@ constexpr double like_density = 5.0;  // so far outside of the densities played 
 constexpr double battered = 0.05;     // share of steep faces of a design with upright walls at most
 
 /// The figures that played jobs scale.
-enum Scaled { digs, time, energy, fuel_volume, scaled };
+enum Scaled : std::size_t { digs, time, energy, fuel_volume, scaled };
 using Logarithms = std::array<double, scaled>;
 
 /// All that changes with the density.
@@ -38,7 +38,7 @@ struct AtDensity {
   Logarithms mean = {};
 };
 
-/// Joint work and time of the whole job -> fuel [L].
+/// Fuel of the whole job by the work of its joints and its time [L].
 double litres(const FuelModel& fuel, double work, double time) {
   return fuel.flow(work / time) * time / 1000.0;
 }
@@ -76,7 +76,7 @@ AtDensity Estimator::at(double density) const {
   at.mass = volume * bank_state(soil_, density).bulk_density;
   for (const PlayedJob& each : basis_.played.jobs) at.played.push_back(by(each, at));
   for (const Logarithms& each : at.played) {
-    for (int i = 0; i < scaled; ++i) {
+    for (std::size_t i = 0; i < scaled; ++i) {
       at.mean[i] += each[i] / static_cast<double>(at.played.size());
     }
   }
@@ -101,14 +101,16 @@ std::array<double, scaled + 2> Estimator::density_spread() const {
   if (!(upper > lower)) return spread;
   const AtDensity loose = at(lower), dense = at(upper);
   const double share = sd / (upper - lower);
-  for (int i = 0; i < scaled; ++i) spread[i] = share * std::abs(dense.mean[i] - loose.mean[i]);
+  for (std::size_t i = 0; i < scaled; ++i)
+    spread[i] = share * std::abs(dense.mean[i] - loose.mean[i]);
   spread[scaled] = share * std::abs(std::log(dense.swollen / loose.swollen));
   spread[scaled + 1] = share * std::abs(std::log(dense.mass / loose.mass));
   return spread;
 }
 
 /// Of one more job: Student's t of so few, in deviations of a normal distribution.
-double played_spread(const std::vector<Logarithms>& played, const Logarithms& mean, int figure) {
+double played_spread(const std::vector<Logarithms>& played, const Logarithms& mean,
+                     std::size_t figure) {
   const auto count = static_cast<double>(played.size());
   double squares = 0.0;
   for (const Logarithms& each : played) squares += std::pow(each[figure] - mean[figure], 2);
@@ -130,14 +132,14 @@ std::vector<std::string> differences(const Machine& machine, const SoilKind& soi
     loosest = std::min(loosest, each.density_percent);
     densest = std::max(densest, each.density_percent);
   }
-  if (soils.count(soil.name) == 0) found.push_back("no job in " + soil.name + " was played");
+  if (soils.count(soil.name) == 0) found.emplace_back("no job in " + soil.name + " was played");
   const double density = job.density.percent;
   if (density < loosest - like_density || density > densest + like_density) {
     found.push_back("the density is " + readable(density, 3) + " %, played were " +
                     readable(loosest, 2) + " to " + readable(densest, 2) + " %");
   }
   if (job.shape.steep_share > battered) {
-    found.push_back("the design has battered faces, played were upright trenches");
+    found.emplace_back("the design has battered faces, played were upright trenches");
   }
   const auto compare = [&](const std::string& what, double here, double there) {
     if (here <= like * there && there <= like * here) return;
@@ -163,7 +165,7 @@ JobEstimate Estimator::estimate() const {
   estimate.unlike = differences(machine_, soil_, job_, basis_.played);
   EstimateSpread common;
   common.volume = job_.shape.volume.sd / job_.shape.volume.value;
-  const auto of_ground = [&](double value, int figure) {
+  const auto of_ground = [&](double value, std::size_t figure) {
     EstimatedFigure found = {value, common};
     found.spread.density = by_density[figure];
     return found;

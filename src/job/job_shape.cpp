@@ -62,7 +62,7 @@ void for_each_place(const DesignSurface& design, const Visit& visit) {
     }
     return;
   }
-  const HeightMap& map = std::get<HeightMap>(design.shape);
+  const auto& map = std::get<HeightMap>(design.shape);
   for_each_cell(map.z, [&](Cell at) {
     if (!std::isnan(map.z(at.row, at.col))) {
       visit(Eigen::Vector2d(map.x(at.col), map.y(at.row)));
