@@ -23,6 +23,7 @@ constexpr double fill_sd = 0.05;      // of ln of it
 constexpr double unlike_sd = 0.25;    // of ln, for each thing in which a job is not as those played
 constexpr double like = 2.0;          // a length up to this factor off is as played
 constexpr double like_density = 5.0;  // so far outside of the densities played [points]
+constexpr double narrow = 0.95;       // of the width of the bucket, and the cut is wider than told
 constexpr double battered = 0.05;     // share of steep faces of a design with upright walls at most
 
 /// The figures that played jobs scale.
@@ -146,6 +147,11 @@ std::vector<std::string> differences(const Machine& machine, const SoilKind& soi
     found.push_back("its " + what + " is " + readable(here, 3) + " m, played was " +
                     readable(there, 3) + " m");
   };
+  const double bucket = machine.bucket.width_outside;
+  if (job.shape.width < narrow * bucket) {
+    found.push_back("its mean width is " + readable(job.shape.width, 3) +
+                    " m, less than that of the bucket, " + readable(bucket, 3) + " m");
+  }
   compare("length", job.shape.length, played.length);
   compare("mean width", job.shape.width, played.width);
   compare("mean depth", job.shape.depth, played.depth);

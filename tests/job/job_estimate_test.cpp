@@ -112,6 +112,10 @@ TEST(JobEstimate, WhatWasNeverPlayedEndsTrust) {
   EXPECT_NE(deep.unlike[0].find("mean depth is 1.50 m, played was 0.500 m"), std::string::npos)
       << deep.unlike[0];
   EXPECT_GT(deep.digs.spread.total(), known.digs.spread.total());
+  const JobEstimate narrow = found("loam", trench("15x0.55x0.5", {50.0, 0.0}));
+  ASSERT_EQ(narrow.unlike.size(), 1U);
+  EXPECT_NE(narrow.unlike[0].find("less than that of the bucket, 0.700 m"), std::string::npos)
+      << narrow.unlike[0];
   const JobEstimate gravel = found("gravel", trench("15x1x0.5", {95.0, 0.0}));
   EXPECT_EQ(gravel.unlike.size(), 2U);
   EXPECT_GT(gravel.digs.spread.unlike, deep.digs.spread.unlike);
