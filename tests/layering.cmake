@@ -31,7 +31,8 @@ set(images_may_use clouds scans)
 set(recording_may_use clouds scans images)
 set(density_may_use ground change soil machine simulation calibration scans logs)
 set(site_may_use ground change soil belief machine simulation planning scans density)
-set(job_may_use ground soil belief machine simulation planning scans design density site)
+set(job_may_use
+  ground soil belief machine simulation planning scans design efficiency density site)
 set(trial_may_use
   ground change soil belief machine earth simulation sensing planning clouds scans design density site job)
 set(paper_may_use change clouds scans density)

@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 // Numbers of our own choice.
 constexpr int headings = 12;
 constexpr double place_step = 0.25;       // of places to stand [m]
+constexpr double same_place = 1.0;        // [m]
 constexpr double farthest = 5.0;          // from what is hidden, along and across [m]
 constexpr std::size_t most_cells = 200;   // that are looked for from each place
 constexpr double least_revealed = 0.002;  // of the design, to be worth the way
@@ -98,11 +99,10 @@ class Lookout {
     return places;
   }
 
+  /// What was not seen from there will not be from beside it, whatever the map says.
   bool is_here(const JobStation& place) const {
     const Vector2d at = task_.frame.place(place.along, place.beside);
-    const double turned = task_.frame.heading + place.turned - task_.base.heading;
-    return (at - Vector2d(task_.base.x, task_.base.y)).norm() < place_step &&
-           std::abs(turned_by(turned)) < pi / headings;
+    return (at - Vector2d(task_.base.x, task_.base.y)).norm() < same_place;
   }
 
   /// Of the cells of the design.

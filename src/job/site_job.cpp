@@ -120,7 +120,7 @@ struct SiteJob::State {
     stations = stations_of(frame, settings);
     const JobStation last = stations.back();
     const JobStation lookout;
-    stations.insert(stations.end(), {lookout, lookout, last, lookout, lookout});
+    stations.insert(stations.end(), {lookout, lookout, lookout, last, lookout, lookout, lookout});
   }
 
   JobProgress progress() const {

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+
 #include "base/json.hpp"
 #include "results/plan_results.hpp"
 
@@ -29,7 +32,50 @@ Json predicted_json(const ForetoldStep& foretold) {
           {"energy_kj_interval", {energy[0] / 1000.0, energy[1] / 1000.0}}};
 }
 
+Json whole(double value) { return std::llround(std::ceil(value)); }
+
+/// A figure, its interval, and the deviations behind it in per cent of the figure.
+void add_figure(Json& json, const std::string& key, const EstimatedFigure& figure,
+                const std::function<Json(double)>& shown) {
+  const auto interval = figure.interval();
+  const EstimateSpread& spread = figure.spread;
+  json[key] = shown(figure.value);
+  json[key + "_interval"] = {shown(interval[0]), shown(interval[1])};
+  json["spread_percent"][key] = {
+      {"volume", 100.0 * spread.volume},      {"density", 100.0 * spread.density},
+      {"played_jobs", 100.0 * spread.played}, {"unlike_played", 100.0 * spread.unlike},
+      {"fuel_model", 100.0 * spread.fuel},    {"truck_fill", 100.0 * spread.fill}};
+}
+
 }  // namespace
+
+Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job) {
+  const auto times = [](double factor) {
+    return [factor](double value) { return factor * value; };
+  };
+  Json json;
+  add_figure(json, "digs", estimate.digs, whole);
+  add_figure(json, "time_min", estimate.time, times(1.0 / 60.0));
+  add_figure(json, "fuel_l", estimate.fuel, times(1.0));
+  add_figure(json, "truckloads", estimate.truckloads, whole);
+  add_figure(json, "energy_kj", estimate.energy, times(1e-3));
+  add_figure(json, "swollen_m3", estimate.swollen, times(1.0));
+  add_figure(json, "mass_kg", estimate.mass, times(1.0));
+  json["design_m3"] = job.shape.volume.value;
+  json["design_sd_m3"] = job.shape.volume.sd;
+  json["density_percent"] = job.density.percent;
+  json["density_sd_percent"] = job.density.sd_percent;
+  json["bulking_factor"] = estimate.swollen.value / job.shape.volume.value;
+  json["truck_mass_kg"] = job.truck_mass;
+  json["reference_kj_per_design_m3"] = 1e-3 * estimate.reference_energy;
+  json["reference_time_min"] = estimate.reference_time / 60.0;
+  json["reference_digs"] = estimate.reference_digs;
+  json["reference_payload_kg"] = estimate.dig.payload_mass;
+  json["reference_fill"] = estimate.dig.fill;
+  json["unlike_played"] = estimate.unlike;
+  json["trustworthy"] = estimate.trustworthy();
+  return json;
+}
 
 Json job_step_json(const JobStep& step) {
   const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include <excavplan/job/job_estimate.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 
@@ -24,6 +25,9 @@ Json job_step_json(const JobStep& step);
 
 /// How far a job has come, as plan-site show prints it.
 Json progress_json(const JobProgress& progress);
+
+/// What a job is going to take, as plan-site estimate prints it; digs and loads are whole ones.
+Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job);
 
 /// Key `search` of a result: all that a search was set to.
 Json search_settings_json(const Machine& machine, const DigSearchOptions& options);

@@ -7,8 +7,7 @@
 #include <limits>
 
 #include <excavplan/planning/dig_cycle.hpp>
-#include <excavplan/planning/dig_search.hpp>
-#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/planning/dig_goal.hpp>
 #include <excavplan/trial/job_score.hpp>
 
 #include "base/angles.hpp"
@@ -20,8 +19,6 @@ namespace excavplan {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double swing = 22.0 * pi / 180.0;  // as job references say [rad]
-constexpr double pin = 2.0;                  // likewise [m]
 
 /// Least work to part soil from the ground, per volume: a wedge without weight ahead of a smooth
 /// plate of the rake of the lip (Coulomb), over all planes of rupture [J/m^3].
@@ -65,23 +62,10 @@ double lift(const Machine& machine, double payload, double depth, double height)
   return work;
 }
 
-Found<DigSearchResult> best_full_dig(const HiddenSite& site, const Machine& machine, double density,
-                                     const ReferenceOptions& options) {
-  DigSearchOptions search = budget_search();
-  search.objective = DigObjective(DigObjective::Goal::cycle);
-  search.objective.swing = swing;
-  search.objective.dump_height = pin;
-  search.objective.min_fill = options.full;
-  search.stop.evaluations = options.evaluations;
-  search.threads = options.threads;
-  const auto simulator = options.simulator.make(machine, site.soil, density);
-  return search_dig(machine, *simulator, level_planning_ground(machine), search);
-}
-
 }  // namespace
 
 JobReference job_reference(const HiddenSite& site, const Machine& machine,
-                           const ReferenceOptions& options) {
+                           const FullDigOptions& options) {
   const ScoredDesign design = scored_design(site.known, site.ground.surface());
   const double cell = site.ground.bank.cell_size;
   const double area = cell * cell * design.share.sum();
@@ -93,7 +77,7 @@ JobReference job_reference(const HiddenSite& site, const Machine& machine,
   reference.swollen =
       reference.design_cut * bulking_of_density(site.soil, reference.density_percent);
 
-  const auto best = best_full_dig(site, machine, reference.density_percent, options);
+  const auto best = best_full_dig(machine, site.soil, reference.density_percent, options);
   reference.energy = reference.time = reference.digs = nan;
   if (best) {
     reference.dig = best->dig;
@@ -113,7 +97,7 @@ JobReference job_reference(const HiddenSite& site, const Machine& machine,
     PlannedDig dig = best->dig;
     dig.payload_mass = mass;
     DigObjective least;
-    least.swing = swing;
+    least.swing = FullDigCycle{}.swing;
     least.dump_height = height + machine.bucket_length;
     const auto cycle = cycle_of(machine, best->path, dig, least);
     if (cycle) of_load += cycle->swing.energy + cycle->back.energy;

@@ -143,6 +143,60 @@ TEST_F(PlanSite, APlainSiteSaysAll) {
           {"new", folder.file("other"), "--site", file, "--soil", "clay"});
 }
 
+TEST_F(PlanSite, AnEstimateOfWordsOfASiteAndOfAJob) {
+  const json words = answer(
+      "plan-site", {"estimate", "--trench", "2.5x1x0.4m", "--soil", "loam", "--density", "40"});
+  EXPECT_NEAR(number(words, "/design_m3"), 1.0, 1e-6);
+  EXPECT_EQ(words["density_sd_percent"], 10.0);
+  const Words figures = {"digs", "time_min", "fuel_l", "truckloads", "swollen_m3", "mass_kg"};
+  expect_keys(words, "number", figures + Words{"reference_kj_per_design_m3", "reference_digs"});
+  for (const std::string& key : figures) {
+    const json& interval = words[key + "_interval"];
+    EXPECT_LE(interval[0], words[key]) << key;
+    EXPECT_LE(words[key], interval[1]) << key;
+    EXPECT_EQ(words["spread_percent"][key].size(), 6U);
+  }
+  EXPECT_NEAR(number(words, "/swollen_m3"), number(words, "/bulking_factor"), 1e-9);
+  EXPECT_EQ(words["trustworthy"], false);  // a short trench was never played
+
+  answer("plan-site", order());
+  const json begun = answer("plan-site", {"estimate", job(), "--density", "40"});
+  EXPECT_NEAR(number(begun, "/design_m3"), 1.0, 0.06);
+  EXPECT_NEAR(number(begun, "/digs"), number(words, "/digs"), 2.0);
+  EXPECT_GT(number(begun, "/spread_percent/digs/volume"), 0.5);
+  const json guessed = answer("plan-site", {"estimate", job()});
+  EXPECT_EQ(guessed["density_sd_percent"], 25.0);
+  EXPECT_GT(number(guessed, "/spread_percent/digs/density"),
+            number(begun, "/spread_percent/digs/density"));
+  const Words scanned = {"estimate", "--trench", "2.5x1x0.4", "--from",    "2,0", "--heading",
+                         "0",        "--scan",   level,       "--density", "40",  "--truck-mass",
+                         "500"};
+  const json seen = answer("plan-site", scanned);
+  EXPECT_NEAR(number(seen, "/design_m3"), number(begun, "/design_m3"), 0.06);
+  EXPECT_GE(number(seen, "/truckloads"), 3.0);
+
+  const ProgramResult strict =
+      run_program("plan-site", {"estimate", "--trench", "15x1x3", "--strict"});
+  EXPECT_EQ(strict.code, 4);
+  EXPECT_TRUE(contains(strict.out, "NOT TRUSTWORTHY: its mean depth is 3.00 m")) << strict.out;
+}
+
+TEST_F(PlanSite, AnEstimateNamesWhatIsWrong) {
+  const auto refuse = [&](const Words& words, const std::string& reason, int code = 2) {
+    refused(code, reason, "plan-site", Words{"estimate"} + words);
+  };
+  refuse({}, "the design is missing: give FOLDER, --site, --trench or --design");
+  refuse({"--trench", "10x0.7"}, "--trench: design: the size of a trench is '10x0.7', must be");
+  refuse({"--trench", "10x1x500"}, "--trench: design: depth [m] is 500");
+  refuse({"--trench", "10x1x1", "--soil", "mud"}, "--soil: 'mud' is neither a file nor one of");
+  refuse({"--trench", "10x1x1", "--density", "150"}, "--density [%] is 150, must be in 0 .. 100");
+  refuse({"--trench", "10x1x1", "--truck-mass", "0"}, "--truck-mass [kg] is 0");
+  refuse({"--trench", "10x1x1", "--fuel-model", "coal"}, "'coal' is neither a file nor one of");
+  refuse({job()}, "holds no job: it has no order.json", 3);
+  refuse({job(), "--trench", "10x1x1"}, "FOLDER excludes --site, --trench");
+  refused(2, "FOLDER is missing", "plan-site", {"next"});
+}
+
 TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
   const auto with = [&](const std::string& option, const std::string& value) {
     Words words = order();
@@ -168,7 +222,7 @@ TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
   refuse("--soil", "peat", "peat");
   refuse("--scan", folder.file("none.asc"), "none.asc", 3);
   refuse("--design", letter, "--design excludes --trench");
-  refused(2, "COMMAND: 'nxt' is not one of new|next|done|scan|show|undo", "plan-site",
+  refused(2, "COMMAND: 'nxt' is not one of new|next|done|scan|show|undo|estimate", "plan-site",
           {"nxt", job()});
   refused(3, "holds no job: it has no order.json", "plan-site", {"next", job()});
   answer("plan-site", order());

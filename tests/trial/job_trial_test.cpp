@@ -103,7 +103,7 @@ TEST(JobTrial, ADesignWithoutWordsHasNoPlainPolicy) {
 
 TEST(JobReference, DenserGroundCostsMoreAndTheBoundIsBelow) {
   PlainSiteFolder folder;
-  ReferenceOptions options;
+  FullDigOptions options;
   options.evaluations = 80;
   double last = 0.0;
   for (const double density : {20.0, 60.0}) {
@@ -120,7 +120,7 @@ TEST(JobReference, DenserGroundCostsMoreAndTheBoundIsBelow) {
 
 TEST(JobReference, ThreadsDoNotMatter) {
   const HiddenSite site = PlainSiteFolder().read();
-  ReferenceOptions one, three;
+  FullDigOptions one, three;
   one.evaluations = three.evaluations = 60;
   one.threads = 1;
   three.threads = 3;

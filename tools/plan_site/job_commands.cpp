@@ -12,6 +12,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "plan_site/estimate.hpp"
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
@@ -189,9 +190,9 @@ Outcome work_undo(const JobInputs& inputs, Console& /*console*/) {
 }  // namespace
 
 const std::vector<JobCommand>& job_commands() {
-  static const std::vector<JobCommand> rows = {{"new", work_new},   {"next", work_next},
-                                               {"done", work_done}, {"scan", work_scan},
-                                               {"show", work_show}, {"undo", work_undo}};
+  static const std::vector<JobCommand> rows = {
+      {"new", work_new},   {"next", work_next}, {"done", work_done},        {"scan", work_scan},
+      {"show", work_show}, {"undo", work_undo}, {"estimate", work_estimate}};
   return rows;
 }
 

@@ -23,10 +23,21 @@ void declare_words(Arguments& arguments, JobInputs& inputs, const std::string& w
   arguments.add(command);
   Arguments::Entry folder;
   folder.name = folder.placeholder = "FOLDER";
-  folder.help = "folder of the job";
-  folder.positional = folder.required = folder.place = true;
+  folder.help = "folder of the job; an estimate needs none";
+  folder.positional = folder.place = true;
   folder.assign = [&inputs](const std::string& text) { inputs.folder = text; };
   arguments.add(folder);
+}
+
+void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
+  arguments.option("density-sd", inputs.density_sd, Quantity::percent,
+                   "standard deviation of --density (default: 10; 25 where no density is told, or "
+                   "as the site says)");
+  arguments.option("truck-mass", inputs.truck_mass, Quantity::mass,
+                   "of a load of a truck (default: that of --truck, the job or the site, else "
+                   "15000)");
+  arguments.text("fuel-model", "NAME|FILE", inputs.fuel,
+                 "engine: zx120, scaled to the power of another machine, or a fuel model file");
 }
 
 }  // namespace
@@ -38,9 +49,19 @@ void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) 
     };
   };
   declare_words(arguments, inputs, words);
-  arguments.only_if({is({"new"}), "it is of plan-site new"},
+  const auto tells_order = [&inputs] {
+    return inputs.command == "new" || (inputs.command == "estimate" && inputs.folder.empty());
+  };
+  arguments.only_if({tells_order, "it is of plan-site new, and of estimate without a folder"},
                     [&] { declare_order(arguments, inputs.order); });
-  arguments.only_if({is({"new", "done", "scan"}), "this command takes no scan"},
+  arguments.only_if({is({"new", "estimate"}), "it is of plan-site new and estimate"}, [&] {
+    arguments.option("density", inputs.order.density, Quantity::percent,
+                     "relative density of the ground, with which plans begin (default: 50, or as "
+                     "the site says)");
+  });
+  arguments.only_if({is({"estimate"}), "it is of plan-site estimate"},
+                    [&] { declare_estimate(arguments, inputs.estimate); });
+  arguments.only_if({is({"new", "done", "scan", "estimate"}), "this command takes no scan"},
                     [&] { declare_scan(arguments, inputs.scan); });
   arguments.only_if({is({"new", "done"}), "it is of plan-site new and done"}, [&] {
     arguments.text("base", "X,Y,HEADING", inputs.base,

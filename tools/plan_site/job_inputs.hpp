@@ -10,6 +10,13 @@
 
 namespace excavplan::tools {
 
+/// What only an estimate asks for.
+struct EstimateInputs {
+  std::optional<double> density_sd;  ///< [points]
+  std::optional<double> truck_mass;  ///< of a load [kg]
+  std::string fuel = "zx120";        ///< name or file of a fuel model
+};
+
 struct JobInputs {
   std::string command, folder;
   OrderInputs order;
@@ -18,6 +25,7 @@ struct JobInputs {
   std::optional<double> payload_mass, energy;
   std::optional<std::string> loads, base, report;
   bool stalled = false;
+  EstimateInputs estimate;
 };
 
 /// @param words  all commands, between bars

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan_site/job_lines.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
 
@@ -20,7 +23,48 @@ std::string dump_text(const JobStep& step) {
          (step.truck ? ", truck " + std::to_string(*step.truck) : "");
 }
 
+/// "26 (18 .. 38), sd: played jobs 15 %, density 8 %"
+std::string figure_text(const EstimatedFigure& figure, const std::string& unit, double scale) {
+  const auto shown = [&](double value) {
+    return unit.empty() ? std::to_string(std::llround(std::ceil(value)))
+                        : readable(scale * value, 3);
+  };
+  const auto interval = figure.interval();
+  const EstimateSpread& spread = figure.spread;
+  std::string from;
+  const std::pair<const char*, double> parts[] = {
+      {"volume", spread.volume},       {"density", spread.density}, {"played jobs", spread.played},
+      {"unlike those", spread.unlike}, {"fuel model", spread.fuel}, {"truck fill", spread.fill}};
+  for (const auto& [name, part] : parts) {
+    if (part < 0.005) continue;
+    from += (from.empty() ? "; sd: " : ", ") + std::string(name) + " " + readable(100.0 * part, 2) +
+            " %";
+  }
+  return shown(figure.value) + (unit.empty() ? "" : " " + unit) + ", 95 %: " + shown(interval[0]) +
+         " .. " + shown(interval[1]) + from;
+}
+
 }  // namespace
+
+std::vector<std::string> estimate_lines(const JobEstimate& estimate, const JobOutline& job) {
+  const double volume = job.shape.volume.value;
+  std::vector<std::string> lines = {
+      "design       " + readable(volume, 3) + " m3 of bank, density " +
+          readable(job.density.percent, 3) + " +- " + readable(job.density.sd_percent, 2) + " %",
+      "loose        " + figure_text(estimate.swollen, "m3", 1.0),
+      "mass         " + figure_text(estimate.mass, "t", 1e-3),
+      "digs         " + figure_text(estimate.digs, "", 1.0),
+      "time         " + figure_text(estimate.time, "min", 1.0 / 60.0),
+      "fuel         " + figure_text(estimate.fuel, "L", 1.0),
+      "truckloads   " + figure_text(estimate.truckloads, "", 1.0) + ", of " +
+          readable(1e-3 * job.truck_mass, 3) + " t",
+      "reference    R " + readable(1e-3 * estimate.reference_energy, 3) + " kJ per m3, " +
+          readable(estimate.reference_digs, 3) + " digs of " +
+          readable(estimate.dig.payload_mass, 3) + " kg, " +
+          readable(estimate.reference_time / 60.0, 3) + " min"};
+  for (const std::string& each : estimate.unlike) lines.push_back("NOT TRUSTWORTHY: " + each);
+  return lines;
+}
 
 std::vector<std::string> step_lines(const JobStep& step) {
   std::vector<std::string> lines = {"step         " + std::to_string(step.id) + ", " +

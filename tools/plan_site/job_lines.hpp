@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/job/job_estimate.hpp>
 #include <excavplan/job/site_job.hpp>
 
 /// @file
@@ -14,5 +15,6 @@ namespace excavplan::tools {
 
 std::vector<std::string> step_lines(const JobStep& step);
 std::vector<std::string> progress_lines(const JobProgress& progress);
+std::vector<std::string> estimate_lines(const JobEstimate& estimate, const JobOutline& job);
 
 }  // namespace excavplan::tools

@@ -44,6 +44,11 @@ void add_texts(Arguments& arguments, const char* name, const char* placeholder,
   arguments.add(entry);
 }
 
+void name_kinds(const OrderInputs& inputs, SiteSettings& site) {
+  site.machine = of_option("--machine", [&] { return machine_named(inputs.machine); });
+  site.soil = of_option("--soil", [&] { return soil_named(inputs.soil); });
+}
+
 bool is_raster(const std::string& file) {
   const std::string ending = small_letters(std::filesystem::path(file).extension().string());
   return ending == ".asc" || ending == ".tif" || ending == ".tiff";
@@ -60,14 +65,20 @@ Surface surface_of(const Scan& scan, const Machine& machine) {
   return survey_surface(scan, *seen.extent, options);
 }
 
-DesignWords words_of(const OrderInputs& inputs) {
+/// All of a trench but its place.
+DesignWords size_of(const OrderInputs& inputs) {
   DesignWords words = of_option("--trench", [&] { return trench_of_size(*inputs.trench); });
+  words.grade = inputs.grade;
+  words.batter = inputs.batter;
+  return words;
+}
+
+DesignWords words_of(const OrderInputs& inputs) {
+  DesignWords words = size_of(inputs);
   if (!inputs.from) usage_error("--from is missing: where the trench begins");
   if (!inputs.heading) usage_error("--heading is missing: where the trench goes from there");
   words.from = parse_point("--from", *inputs.from);
   words.heading = *inputs.heading;
-  words.grade = inputs.grade;
-  words.batter = inputs.batter;
   return words;
 }
 
@@ -219,9 +230,6 @@ void declare_order(Arguments& arguments, OrderInputs& inputs) {
             "times [m]");
   arguments.option("tolerance", inputs.tolerance, Quantity::length,
                    "of the finished ground, to either side");
-  arguments.option("density", inputs.density, Quantity::percent,
-                   "relative density of the ground, with which plans begin (default: 50, or as "
-                   "the site says)");
   for (const char* alone : {"design", "trench"}) arguments.exclude("site", {alone});
   arguments.exclude("site", {"from", "heading", "grade", "batter", "soil", "machine", "windrow",
                              "heap", "truck", "keep-out", "tolerance", "surface"});
@@ -235,14 +243,51 @@ Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
   }
   Order order;
   SiteSettings& site = order.settings.site;
-  site.machine = machine_named(inputs.machine);
-  site.soil = soil_named(inputs.soil);
+  name_kinds(inputs, site);
   order.settings.density_percent = inputs.density.value_or(order.settings.density_percent);
   order.settings.design = job_of(inputs, site.machine);
   order.first = scan_of(scan);
   const Surface ground = surface_of(order.first, site.machine);
   order.settings.surface = design_of(inputs, ground);
   return finished(std::move(order), inputs.machine);
+}
+
+GroundErrors errors_of_scan() {
+  GroundErrors errors;
+  errors.height_sd = 0.01;
+  return errors;
+}
+
+PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
+  PlannedCut cut;
+  CutOptions options;
+  options.errors = errors_of_scan();
+  const auto against = [&](const DesignSurface& design, const Surface& ground) {
+    cut.shape = shape_of(design, cut_and_fill(design, ground, options));
+  };
+  if (inputs.site) {
+    const Order order = order_of(inputs, scan);
+    cut.site = order.settings.site;
+    cut.density = read_site_brief(*inputs.site).density;
+    cut.truck = order.settings.design.truck;
+    against(order.settings.surface, surface_of(order.first, cut.site.machine));
+    return cut;
+  }
+  if (!inputs.trench && !inputs.design) {
+    usage_error("the design is missing: give FOLDER, --site, --trench or --design");
+  }
+  name_kinds(inputs, cut.site);
+  if (inputs.truck) {
+    cut.truck = of_option("--truck", [&] { return truck_of_text(*inputs.truck); });
+  }
+  if (inputs.trench && !scan.scan) {
+    const DesignWords words = size_of(inputs);
+    cut.shape = of_option("--trench", [&] { return shape_on_level_ground(words); });
+    return cut;
+  }
+  const Surface ground = surface_of(scan_of(scan), cut.site.machine);
+  against(design_of(inputs, ground), ground);
+  return cut;
 }
 
 }  // namespace excavplan::tools

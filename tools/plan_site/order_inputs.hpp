@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/job/job_estimate.hpp>
 #include <excavplan/job/job_order.hpp>
 
 #include "frame/arguments.hpp"
@@ -51,5 +52,18 @@ struct Order {
 };
 /// @throws Error (bad_input), (bad_file) naming option, file, key and value
 Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan);
+
+/// The design against the ground, for an estimate: where soil goes need not be told, and without a
+/// scan a trench is one in level ground.
+struct PlannedCut {
+  SiteSettings site;  ///< soil and machine
+  JobShape shape;
+  std::optional<GroundDensity> density = {};  ///< as the site says
+  std::optional<JobTruck> truck = {};
+};
+/// @throws Error as order_of()
+PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan);
+/// Deviations of the heights of a first scan by its registration; ours.
+GroundErrors errors_of_scan();
 
 }  // namespace excavplan::tools

@@ -11,15 +11,18 @@ const About about = {
     "plans a whole job, from a design and a scan to finished ground, step by step. COMMAND is new "
     "(begins a job in FOLDER), next (the step to do now, the same until it is done), done (what "
     "became of it), scan (takes in a scan that no step asked for), show (how far the job is, with "
-    "--report a page of it) or "
-    "undo (takes the last done or scan back). FOLDER holds all that the job knows.",
+    "--report a page of it), undo (takes the last done or scan back) or estimate (digs, time, fuel "
+    "and truckloads before the first bucket, of the job in FOLDER, a plain site, or a trench in "
+    "words). FOLDER holds all that the job knows.",
     {{"plan-site new job --trench 15x1x0.5 --from 3,0 --heading 0 --scan scan.tif --soil loam "
       "--windrow 2,1.5,18,1.5,18,5,2,5",
       "a trench from 3 m before the machine, its soil to the left"},
      {"plan-site next job --json", "the next dig, move or scan, with the file of its trajectory"},
      {"plan-site done job --step 7 --payload-mass 540 --energy-kj 160 --scan after.tif",
       "it was done, and this is the ground now"},
-     {"plan-site show job --report job.html", "a page of all that was done"}},
+     {"plan-site show job --report job.html", "a page of all that was done"},
+     {"plan-site estimate --trench 15x1x0.5m --soil clay --density 50",
+      "what a trench is going to take, in level ground"}},
     true,
     false,
     "10 next: the job is finished; 11 next: it is stuck, or nothing is safe"};
@@ -33,6 +36,9 @@ void declare(Arguments& arguments, JobInputs& inputs) {
 }
 
 Outcome work(const JobInputs& inputs, Console& console) {
+  if (inputs.folder.empty() && inputs.command != "estimate") {
+    usage_error("FOLDER is missing: folder of the job");
+  }
   for (const JobCommand& each : job_commands()) {
     if (inputs.command == each.word) return each.work(inputs, console);
   }

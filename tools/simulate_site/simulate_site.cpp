@@ -91,7 +91,7 @@ std::vector<std::string> lines_of(const JobTrial& trial) {
 
 Outcome bound_of(const Inputs& inputs, const HiddenSite& site, const Machine& machine,
                  Console& console) {
-  ReferenceOptions options;
+  FullDigOptions options;
   options.simulator = simulator_of(inputs.simulator, console);
   options.threads = static_cast<unsigned>(inputs.threads);
   const JobReference reference = job_reference(site, machine, options);

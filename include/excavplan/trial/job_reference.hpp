@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/job/full_dig.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
 namespace excavplan {
@@ -11,9 +10,8 @@ namespace excavplan {
 /// What a job costs at its best, by which a planner's cost is judged: per cubic metre of the
 /// design.
 ///
-/// R: the best dig of a full bucket by cycle energy on level ground of the mean true density, with
-/// a swing of 22 degrees and the bucket pin 2.0 m high when it dumps; as many of these as the
-/// swollen volume of the design takes.
+/// R: best_full_dig() in soil of the mean true density; as many of these as the swollen volume of
+/// the design takes.
 ///
 /// B: of each load the rupture of its soil by a wedge of the rake of the lip without weight or
 /// friction of the tool, the lift of soil and links from the middle of the cut over the windrow or
@@ -31,16 +29,8 @@ struct JobReference {
   double least_loads = 0.0;      ///< heaped buckets
 };
 
-/// Settings of job_reference().
-struct ReferenceOptions {
-  SimulatorKind simulator = default_simulator();
-  int evaluations = 600;  ///< of the search; ours
-  double full = 0.95;     ///< least share of the heaped capacity of a full bucket; ours
-  unsigned threads = 0;   ///< 0: one per core; the same result for any number
-};
-
-/// @throws Error (bad_input) as search_dig(); if the machine states no swing or engine
+/// @throws Error (bad_input) as best_full_dig()
 JobReference job_reference(const HiddenSite& site, const Machine& machine,
-                           const ReferenceOptions& options = {});
+                           const FullDigOptions& options = {});
 
 }  // namespace excavplan
