@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iomanip>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +26,18 @@ inline pybind11::str text(const std::string& message) {
 /// As Python writes it.
 inline std::string number(double value) {
   return pybind11::str(pybind11::repr(pybind11::float_(value)));
+}
+
+/// To three digits: "3.14"
+inline std::string rounded(double value) {
+  std::ostringstream text;
+  const bool whole = value >= 1e3 || value <= -1e3;
+  if (whole) {
+    text << std::fixed << std::setprecision(0) << value;
+  } else {
+    text << std::setprecision(3) << value;
+  }
+  return text.str();
 }
 
 /// "Measured(value=1.2, sd=0.1)"
