@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -28,15 +29,12 @@ inline std::string number(double value) {
   return pybind11::str(pybind11::repr(pybind11::float_(value)));
 }
 
-/// To three digits: "3.14"
+/// To three digits, or whole: "3.14", "31416"
 inline std::string rounded(double value) {
   std::ostringstream text;
-  const bool whole = value >= 1e3 || value <= -1e3;
-  if (whole) {
-    text << std::fixed << std::setprecision(0) << value;
-  } else {
-    text << std::setprecision(3) << value;
-  }
+  if (std::abs(value) >= 1e3) text << std::fixed;
+  text << std::setprecision(std::abs(value) >= 1e3 ? 0 : 3);
+  text << (std::abs(value) < 1e-9 ? 0.0 : value);
   return text.str();
 }
 
