@@ -138,9 +138,7 @@ void bind_true_step(py::module_& module) {
 
 using TruthClass = py::class_<TruthInPython>;
 
-void bind_truth(py::module_& module) {
-  bind_true_step(module);
-  TruthClass truth(module, "TrueSite", "A machine on the true ground of a site.");
+void bind_doing(TruthClass& truth) {
   truth
       .def(py::init([](const HiddenSite& site, const std::optional<Machine>& machine,
                        std::uint64_t seed, bool scans_each_dig) {
@@ -163,7 +161,11 @@ void bind_truth(py::module_& module) {
           "scan",
           [](TruthInPython& of) { return of.with([](TrueSite& own) { return own.scan(); }); },
           "A Scan from where the machine stands.")
-      .def("score", &TruthInPython::score, "JobScore of the ground as it is now.")
+      .def("score", &TruthInPython::score, "JobScore of the ground as it is now.");
+}
+
+void bind_views(TruthClass& truth) {
+  truth
       .def_property_readonly(
           "ground",
           [](TruthInPython& of) {
@@ -262,7 +264,10 @@ void bind_trial_results(py::module_& module) {
 void bind_trial(py::module_& module) {
   bind_hidden_site(module);
   bind_score(module);
-  bind_truth(module);
+  bind_true_step(module);
+  TruthClass truth(module, "TrueSite", "A machine on the true ground of a site.");
+  bind_doing(truth);
+  bind_views(truth);
   bind_trial_results(module);
   module.def("play_job", &played, arg("site"), arg("planner"), arg("machine") = py::none(),
              py::kw_only(), arg("seed") = 1, arg("most_steps") = TrialOptions{}.most_steps,
