@@ -392,8 +392,8 @@ void bind_jobs(py::module_& module) {
   bind_settings(module);
   bind_history(module);
   JobClass job(module, "SiteJob",
-               "Decides the steps of a job. All that it knows is in a folder, written after every\n"
-               "step.");
+               "Decides the steps of a job. All that it knows is in a folder, written\n"
+               "after every step.");
   bind_making(job);
   bind_doing(job);
   bind_looking(job);

@@ -211,6 +211,7 @@ JobTrial played(const HiddenSite& site, const py::object& planner,
     auto& job = planner.cast<JobInPython&>();
     return own.run([&] { return run_trial(site, machine_of(machine, site), job, options); });
   }
+  if (!py::isinstance<py::str>(planner)) throw py::type_error("planner: a SiteJob or a word");
   const auto word = planner.cast<std::string>();
   std::string known;
   for (const PlainPolicy& policy : plain_policies()) {

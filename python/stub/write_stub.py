@@ -17,7 +17,7 @@ HEAD = '''# SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
 # Written by python/stub/write_stub.py from the module.
 import os
-from typing import Any, Callable, List, Optional, Sequence, Tuple, Union, final, overload
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union, final, overload
 
 __version__: str
 __all__: List[str]
