@@ -46,6 +46,9 @@ PYBIND11_MODULE(_core, module) {
   bind_survey(module);
   bind_design(module);
   bind_site(module);
+  bind_job_steps(module);
+  bind_jobs(module);
+  bind_trial(module);
   module.attr("__name__") = own_name;
   forbid_empty_objects(module);
 

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <mutex>
 
 #include <excavplan/belief/belief_file.hpp>
@@ -10,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "clock.hpp"
 #include "paths.hpp"
 #include "plans.hpp"
 #include "rooms.hpp"
@@ -23,11 +23,6 @@ namespace {
 using py::arg;
 
 // ---- what a site is told ------------------------------------------------------------------------
-
-double now() {
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(since_1970).count();
-}
 
 void tell_dig(const std::optional<SitePlan>& plan, const std::optional<DigParameters>& path,
               const std::optional<double>& start, SiteEvent& event) {

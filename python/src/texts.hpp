@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +27,15 @@ inline pybind11::str text(const std::string& message) {
 /// As Python writes it.
 inline std::string number(double value) {
   return pybind11::str(pybind11::repr(pybind11::float_(value)));
+}
+
+/// To three digits, or whole: "3.14", "31416"
+inline std::string rounded(double value) {
+  std::ostringstream text;
+  if (std::abs(value) >= 1e3) text << std::fixed;
+  text << std::setprecision(std::abs(value) >= 1e3 ? 0 : 3);
+  text << (std::abs(value) < 1e-9 ? 0.0 : value);
+  return text.str();
 }
 
 /// "Measured(value=1.2, sd=0.1)"

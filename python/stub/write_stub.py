@@ -17,7 +17,7 @@ HEAD = '''# SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
 # Written by python/stub/write_stub.py from the module.
 import os
-from typing import Any, Callable, List, Optional, Sequence, Tuple, Union, final, overload
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union, final, overload
 
 __version__: str
 __all__: List[str]
@@ -30,14 +30,16 @@ Vector4 = Tuple[float, float, float, float]
 File = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 '''
 
+SCAN = "Union[Scan, File, Cloud, ArrayLike]"
 # Arguments that the module itself tells apart, by function and name.
 ARGUMENTS = {
     "source": "Union[File, Cloud, ArrayLike, Sequence[Union[File, Cloud]]]",
-    "before": "Union[Scan, File, Cloud, ArrayLike]",
-    "after": "Union[Scan, File, Cloud, ArrayLike]",
-    "scan": "Union[Scan, File, Cloud, ArrayLike]",
+    "before": SCAN,
+    "after": SCAN,
+    "scan": SCAN,
     "dump": "Optional[Tuple[Any, Any]]",
 }
+TOLD_OF_STEPS = "Optional[Callable[[TrialStep], Optional[bool]]]"
 MAY_BE_DERIVED_FROM = 1 << 10  # Py_TPFLAGS_BASETYPE
 SIMULATOR_KIND = "Union[str, Callable[[Machine, SoilKind, float], SoilSimulator], None]"
 
@@ -55,6 +57,8 @@ def result_type(text):
 
 def argument_type(function, name, text):
     """Of an argument, which takes more than a result gives."""
+    if function == "play_job" and text == "object":
+        return "Union[SiteJob, str]" if name == "planner" else TOLD_OF_STEPS
     if text == "object" and name == "simulator":
         return "SoilSimulator" if function in ("evaluate_dig", "search_dig") else SIMULATOR_KIND
     if text == "object" and name == "progress":
@@ -91,8 +95,10 @@ def argument(function, text):
     name, kind, default = match.groups()
     if name == "self" or kind is None:
         return name
-    default = " = ..." if default else ""
-    return f"{name}: {argument_type(function, name, kind)}{default}"
+    wanted = argument_type(function, name, kind)
+    if default == " = None" and wanted == SCAN:
+        wanted = f"Optional[{SCAN}]"
+    return f"{name}: {wanted}{' = ...' if default else ''}"
 
 
 def signatures(function):
@@ -106,11 +112,13 @@ def signatures(function):
 
 def lines_of(name, function, indent=""):
     lines = []
-    found = signatures(function)
+    is_static = isinstance(function, staticmethod)
+    found = signatures(function.__func__ if is_static else function)
     for arguments, result in found:
-        if indent:
+        if indent and not is_static:
             arguments[0] = "self"
         lines += [f"{indent}@overload"] * (len(found) > 1)
+        lines += [f"{indent}@staticmethod"] * is_static
         lines.append(f"{indent}def {name}({', '.join(arguments)}) -> {result}: ...")
     return lines
 
@@ -138,7 +146,7 @@ def class_lines(name, kind):
                 not member_name.startswith("_") or member_name in ("__init__", "__len__",
                                                                    "__bool__", "__enter__",
                                                                    "__exit__")):
-            if signatures(member):
+            if signatures(getattr(member, "__func__", member)):
                 lines += lines_of(member_name, member, "    ")
     return lines if lines[-1].startswith(" ") else [*lines, "    ..."]
 

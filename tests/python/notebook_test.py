@@ -14,6 +14,7 @@ import tempfile
 import unittest
 
 import excavplan
+from plain_site import write_plain_site
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NOTEBOOK = ROOT / "python" / "examples" / "first_dig.ipynb"
@@ -44,11 +45,13 @@ class Notebook(unittest.TestCase):
             shutil.copy(excavplan.data_file("quickstart/after.pcd"), "after.pcd")
             pathlib.Path("frame.txt").write_text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n",
                                                  encoding="ascii")
+            write_plain_site("T01", length=1.5, depth=0.25)
             for example in examples:
                 exec(example, names)  # noqa: S102: our own
         self.assertIsInstance(names["scan"], excavplan.Scan)
         self.assertGreater(names["sent"].positions.shape[0], 10)
         self.assertGreater(names["plan"].dig.efficiency, 0.02)
+        self.assertLess(names["truth"].score().left_percent, 40.0)
 
     def test_the_tables_of_the_guide_name_what_there_is(self):
         table = GUIDE[GUIDE.index("| room |"):GUIDE.index("| in C++ |")]
