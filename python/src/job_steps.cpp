@@ -82,8 +82,11 @@ void bind_step(py::module_& module) {
       .def_property_readonly(
           "site_from_line", [](const JobStep& step) { return array(site_from_line(step)); },
           "Takes points of that frame into that of the site, shape (4, 4).")
-      .def_readonly("dump", &JobStep::dump,
-                    "Of the bucket pin where the bucket opens, in the site's frame [m].")
+      .def_readonly(
+          "dump", &JobStep::dump,
+          "Of the bucket pin where the bucket opens, if it does, in the site's frame [m].")
+      .def_readonly("keeps_load", &JobStep::keeps_load,
+                    "The bucket does not open: it goes back with its load.")
       .def_readonly("truck", &JobStep::truck, "That is loaded, from 1, or None.")
       .def_readonly("predicted", &JobStep::predicted, "Of a dig.")
       .def_readonly("trustworthy", &JobStep::trustworthy, "False: see the warnings.")

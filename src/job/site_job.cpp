@@ -25,8 +25,8 @@ namespace {
 // Numbers of our own choice.
 constexpr std::size_t most_unseen = 5;  // digs between two scans
 constexpr double allowance = 0.15;      // over the design, in tolerances: what is too deep stays so
-constexpr int most_passes = 8;          // along the floor from one station
-constexpr int most_fruitless = 3;       // passes in succession that took nothing off
+constexpr int most_passes = 12;         // along the floor from one station
+constexpr int most_fruitless = 4;       // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 5;  // likewise of digs for volume
 constexpr double off_wall = 0.05;       // of passes beside it [m]
 constexpr double most_carried = 0.4;    // of a heaped bucket, through a pass

@@ -159,6 +159,7 @@ struct TrueSite::State {
   }
 
   TrueStep dig(const JobStep& job);
+  CycleOptions cycle_after(const JobStep& job, double from, const Vector2d& dump) const;
   void fill(const DigResult& dig, const Vector2d& end);
   void dump(const JobStep& job, const Vector2d& at);
   /// Dry mass of so much loose soil [kg].
@@ -224,12 +225,8 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   if (site.density.gradient != 0.0) set_void_ratios(site.density, site.soil, ground);
 
   const double from = line.heading + std::atan2(job.lane, path.poses.back().bucket.x);
-  const double to = std::atan2(dump_at.y() - real.y, dump_at.x() - real.x);
-  CycleOptions options_of_cycle;
-  options_of_cycle.swing = turned(to - from);
-  options_of_cycle.dump_height = std::max(0.0, job.dump.z() - real.z);
-  options_of_cycle.keeps_load = job.keeps_load;
-  const CycleShare cost = cycle_cost(machine, path, with_load(dug, load), options_of_cycle);
+  const CycleShare cost =
+      cycle_cost(machine, path, with_load(dug, load), cycle_after(job, from, dump_at));
   TrueStep done;
   done.time = cost.time;
   done.energy = cost.energy;
@@ -241,6 +238,16 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
                              (1.0 + site.errors.payload_noise * random(scale_stream).normal());
   if (options.scans_each_dig) take_scan(done);
   return done;
+}
+
+/// @param from  heading in which the dig ends [rad]
+CycleOptions TrueSite::State::cycle_after(const JobStep& job, double from,
+                                          const Vector2d& dump) const {
+  CycleOptions cycle;
+  cycle.swing = turned(std::atan2(dump.y() - real.y, dump.x() - real.x) - from);
+  cycle.dump_height = std::max(0.0, job.dump.z() - real.z);
+  cycle.keeps_load = job.keeps_load;
+  return cycle;
 }
 
 /// What was dug comes on top of what the bucket holds.

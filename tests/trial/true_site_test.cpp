@@ -101,8 +101,9 @@ TEST(TrueSite, WhatTheBucketCannotHoldFallsBack) {
   TrueSite truth(site, zx120());
   const double full = heaped_capacity(zx120()) * site.soil.specific_gravity * 1000.0 /
                       (1.0 + site.soil.void_ratio_loose);
-  for (int i = 0; i < 5; ++i) {
-    JobStep step = dig_step(5.5 - 0.1 * i);
+  for (int i = 0; i < 4; ++i) {
+    JobStep step = dig_step();
+    step.lane = 0.8 * i - 1.2;
     step.keeps_load = true;
     truth.execute(step);
   }

@@ -62,9 +62,10 @@ struct SolidsLedger {
 /// plane of the path; also in a lane, whose front reaches a little farther. The bucket turns as
 /// much as keeps its heel off the ground. The machine digs until it has finished or stalls; what is
 /// then in the bucket is dumped, or kept (JobStep::keeps_load); what it cannot hold falls where the
-/// path ends. A load that is carried through a dig changes nothing in it but the lift after it. Where the bank was cut its void ratios are set anew
-/// (set_void_ratios()). The line of a dig and the dump are off as the known pose of the machine is.
-/// Tracks leave no mark, and the ground holds the machine everywhere.
+/// path ends. A load that is carried through a dig changes nothing in it but the lift after it.
+/// Where the bank was cut its void ratios are set anew (set_void_ratios()). The line of a dig and
+/// the dump are off as the known pose of the machine is. Tracks leave no mark, and the ground holds
+/// the machine everywhere.
 class TrueSite {
  public:
   /// @throws Error (bad_input) as require_machine() and SimulatorKind::make()
