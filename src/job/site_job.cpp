@@ -32,13 +32,13 @@ constexpr double off_wall = 0.05;       // of passes beside it [m]
 constexpr double most_carried = 0.4;    // of a heaped bucket, through a pass
 constexpr double least_mass = 15.0;     // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;     // of what a pass is to take off, else it is fruitless
-constexpr double high_share = 0.8;      // of the tolerance: higher cells call for a pass
-constexpr double most_high = 0.03;      // share of cells that may stay so
+constexpr double high_share = 0.7;      // of the tolerance: higher cells call for a pass
+constexpr double most_high = 0.02;      // share of cells that may stay so
 constexpr double heap_share = 1.6;      // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;    // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
 constexpr double least_seen = 0.99;         // of a finished design
-constexpr double well_seen = 0.996;         // of it, so that no more is looked for
+constexpr double well_seen = 0.999;         // of it, so that no more is looked for
 constexpr double after_stall = 0.7;         // of the depth of a cut
 constexpr double after_success = 1.1;       // likewise
 constexpr double shallowest_cut = 0.06;     // [m]
@@ -179,6 +179,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   task.near = range.near;
   task.far = range.far;
   task.ends_at_wall = range.ends_at_wall;
+  task.may_risk = record.progress.stalls == 0;
   const std::vector<double>& lanes = stations[record.station].lanes;
   for (const double lane : finishing ? lanes_of_passes(lanes) : lanes)
     task.lanes.push_back(lane - at.y());

@@ -129,19 +129,22 @@ class StepSearch {
   /// What a dig is for: the wall at the end of the work, volume, or the shape of the floor.
   enum class Aim { wall, volume, shape };
 
-  /// As steeply as the machine surely can.
+  /// As steeply as the machine surely can; else, if it may risk a stall, what is worth most.
   std::optional<StepDig> best_at_wall() {
     std::vector<std::size_t> lanes;
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
       if (has_end_wall(lanes_[lane])) lanes.push_back(lane);
     }
+    std::optional<StepDig> risky_one;
     for (const Attitude& attitude : wall_attitudes) {
       for (const std::size_t lane : lanes) cut_end_wall(lane, attitude);
       auto dig = best(Aim::wall);
       candidates_.clear();
       if (dig && !dig->may_stall) return dig;
+      if (dig && task_.may_risk && (!risky_one || dig->worth > risky_one->worth))
+        risky_one = std::move(dig);
     }
-    return std::nullopt;
+    return risky_one;
   }
 
   std::optional<StepDig> best(Aim aim) {

@@ -28,6 +28,7 @@ struct StepTask {
   double near = 0.0;                    ///< from the swing axis to the nearest part of the work [m]
   double far = 0.0;                     ///< to the farthest [m]
   bool ends_at_wall = false;            ///< there, the design ends
+  bool may_risk = false;                ///< a stall, to take off that end
   double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
   bool finishing = false;         ///< along the floor, for its shape; the load is kept
   double carried = 0.0;           ///< loose, in the bucket [m^3]
