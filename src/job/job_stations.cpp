@@ -48,19 +48,27 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
   return groups;
 }
 
-/// The cells of a grid under the tracks of a machine at a station, and so far around it.
+/// The tracks of a machine at a station, and so far around them.
+struct TrackArea {
+  const JobFrame& frame;
+  const JobStation& station;
+  const Machine& machine;
+  double around = 0.0;  ///< [m]
+};
+
+/// The cells of a grid there.
 template <typename Visit>
-void for_each_under(const JobFrame& frame, const JobStation& station, const Machine& machine,
-                    const HeightMap& grid, double around, Visit visit) {
-  const double front = machine.track_front + around;
-  const double half = 0.5 * machine.undercarriage_width() + around;
+void for_each_under(const TrackArea& tracks, const HeightMap& grid, Visit visit) {
+  const JobStation& station = tracks.station;
+  const double front = tracks.machine.track_front + tracks.around;
+  const double half = 0.5 * tracks.machine.undercarriage_width() + tracks.around;
   const Eigen::Rotation2Dd turn(station.turned);
-  const auto steps = [](double length) { return std::ceil(length / standing_step); };
-  for (double i = -steps(front); i <= steps(front); ++i) {
-    for (double k = -steps(half); k <= steps(half); ++k) {
-      const Eigen::Vector2d off =
-          turn * Eigen::Vector2d(front * i / steps(front), half * k / steps(half));
-      const Eigen::Vector2d at = frame.place(station.along + off.x(), station.beside + off.y());
+  const double rows = std::ceil(front / standing_step), cols = std::ceil(half / standing_step);
+  for (double i = -rows; i <= rows; ++i) {
+    for (double k = -cols; k <= cols; ++k) {
+      const Eigen::Vector2d off = turn * Eigen::Vector2d(front * i / rows, half * k / cols);
+      const Eigen::Vector2d at =
+          tracks.frame.place(station.along + off.x(), station.beside + off.y());
       visit(cell_at(grid, at.x(), at.y()));
     }
   }
@@ -106,11 +114,11 @@ bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& 
                const JobMap& map) {
   bool free = true;
   const HeightMap& target = map.target;
-  for_each_under(frame, station, machine, target, beside_edge, [&](const auto& cell) {
+  for_each_under({frame, station, machine, beside_edge}, target, [&](const auto& cell) {
     free &= !cell || std::isnan(target.z(cell->row, cell->col));
   });
   if (!free) return false;
-  for_each_under(frame, station, machine, target, 0.0, [&](const auto& cell) {
+  for_each_under({frame, station, machine}, target, [&](const auto& cell) {
     free &= cell && !map.dump(cell->row, cell->col) &&
             map.forbidden(cell->row, cell->col) == -std::numeric_limits<double>::infinity();
   });
@@ -123,7 +131,7 @@ BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain
   BasePose base = {place.x(), place.y(), 0.0, frame.heading + station.turned};
   double sum = 0.0;
   int known = 0;
-  for_each_under(frame, station, machine, ground.bank, 0.0, [&](const auto& cell) {
+  for_each_under({frame, station, machine}, ground.bank, [&](const auto& cell) {
     const double z = cell ? ground.bank.z(cell->row, cell->col) : std::nan("");
     if (std::isnan(z)) return;
     sum += z + ground.loose(cell->row, cell->col);

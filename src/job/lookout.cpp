@@ -18,12 +18,12 @@ using Eigen::Vector3d;
 
 // Numbers of our own choice.
 constexpr int headings = 12;
-constexpr double place_step = 0.25;       // of places to stand [m]
-constexpr double same_place = 1.0;        // [m]
-constexpr double farthest = 5.0;          // from what is hidden, along and across [m]
-constexpr std::size_t most_cells = 200;   // that are looked for from each place
+constexpr double place_step = 0.25;        // of places to stand [m]
+constexpr double same_place = 1.0;         // [m]
+constexpr double farthest = 5.0;           // from what is hidden, along and across [m]
+constexpr std::size_t most_cells = 200;    // that are looked for from each place
 constexpr double least_revealed = 0.0005;  // of the design, to be worth the way
-constexpr double way_price = 0.0003;      // of the design, for a metre of the way [1/m]
+constexpr double way_price = 0.0003;       // of the design, for a metre of the way [1/m]
 constexpr double slack = 0.01;  // by which a ray may be within the ground that it passes [m]
 constexpr double outermost =
     0.02;  // share of a cloud's points beside the sector that is counted on
@@ -175,7 +175,7 @@ std::vector<SensorLook> looks_of(const Scan& scan, const BasePose& base) {
     const Vector3d eye = site_from_scan * (scan.unit * *cloud->sensor_origin);
     std::vector<Vector3d> ways;
     for (const Vector3d& point : cloud->points) {
-      if (point.allFinite()) ways.push_back(site_from_scan * (scan.unit * point) - eye);
+      if (point.allFinite()) ways.emplace_back(site_from_scan * (scan.unit * point) - eye);
     }
     if (ways.empty()) continue;
     SensorLook look = look_along(ways);
