@@ -217,6 +217,7 @@ void bind_event(py::module_& module) {
       .def_readonly("predicted", &JobEvent::predicted, "Of a dig.")
       .def_readonly("base", &JobEvent::base, "Where the machine stood; after a move: stands.")
       .def_readonly("dump", &JobEvent::dump, "As of a JobStep [m].")
+      .def_readonly("keeps_load", &JobEvent::keeps_load, "As of a JobStep.")
       .def_readonly("truck", &JobEvent::truck, "That was loaded, or None.")
       .def_readonly("stalled", &JobEvent::stalled)
       .def_readonly("scanned", &JobEvent::scanned, "In it or after it.")

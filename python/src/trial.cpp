@@ -126,10 +126,12 @@ void bind_true_step(py::module_& module) {
         return "<TrueStep: " + rounded(done.payload_mass) + " kg, " + rounded(1e-3 * done.energy) +
                " kJ, " + rounded(done.time) + (done.stall ? " s, stalled>" : " s>");
       });
-  py::class_<SolidsLedger>(module, "SolidsLedger", "Dry mass that was moved: cut = lying + hauled.")
+  py::class_<SolidsLedger>(module, "SolidsLedger",
+                           "Dry mass that was moved: cut = lying + hauled + held.")
       .def_readonly("cut", &SolidsLedger::cut, "From the bank [kg].")
       .def_readonly("lying", &SolidsLedger::lying, "Gained by the loose soil of the site [kg].")
       .def_readonly("hauled", &SolidsLedger::hauled, "By trucks [kg].")
+      .def_readonly("held", &SolidsLedger::held, "By the bucket, since it was dumped last [kg].")
       .def("__repr__", [](const SolidsLedger& solids) {
         return "<SolidsLedger: " + rounded(solids.cut) + " kg cut, " + rounded(solids.lying) +
                " kg lying, " + rounded(solids.hauled) + " kg hauled>";

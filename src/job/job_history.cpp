@@ -64,6 +64,7 @@ JobEvent event_of(const JobStep& step, const StepReport& report) {
   event.predicted = step.predicted;
   event.base = report.base.value_or(step.base);
   event.dump = step.dump;
+  event.keeps_load = step.keeps_load;
   event.truck = step.truck;
   event.stalled = report.stalled;
   event.scanned = report.scan.has_value();

@@ -116,6 +116,7 @@ Json event_json(const JobEvent& event) {
     line["stall"] = event.stalled;
     line["pass"] = finishes ? "finish" : "bulk";
     line["predicted"] = log_foretold_json(event.predicted);
+    line["keeps_load"] = event.keeps_load;
     line["dump"] = {{"x", event.dump.x()}, {"y", event.dump.y()}, {"z", event.dump.z()}};
   }
   if (event.truck) line["truck"] = *event.truck;
@@ -138,6 +139,7 @@ void read_dig(JsonObject& object, JobEvent& event) {
   event.predicted.payload_interval = {payloads[0], payloads[1]};
   const std::vector<double> energies = foretold.numbers("energy_j_interval", 2);
   event.predicted.energy_interval = {energies[0], energies[1]};
+  event.keeps_load = object.flag("keeps_load");
   JsonObject dump = object.object("dump");
   event.dump = {dump.number("x"), dump.number("y"), dump.number("z")};
 }

@@ -94,8 +94,7 @@ Json job_step_json(const JobStep& step) {
   if (digs) {
     json["path"] = path_json(step);
     json["keeps_load"] = step.keeps_load;
-    if (!step.keeps_load)
-      json["dump"] = {{"x_m", step.dump.x()}, {"y_m", step.dump.y()}, {"z_m", step.dump.z()}};
+    json["dump"] = {{"x_m", step.dump.x()}, {"y_m", step.dump.y()}, {"z_m", step.dump.z()}};
     json["predicted"] = predicted_json(step.predicted);
   }
   json["truck"] = step.truck ? Json(*step.truck) : Json();

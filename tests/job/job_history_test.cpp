@@ -42,6 +42,7 @@ void expect_same(const JobHistory& a, const JobHistory& b) {
     EXPECT_EQ(one.predicted.payload_interval, other.predicted.payload_interval);
     EXPECT_EQ(one.base.x, other.base.x);
     EXPECT_EQ(one.dump, other.dump);
+    EXPECT_EQ(one.keeps_load, other.keeps_load);
     EXPECT_EQ(one.stalled, other.stalled);
     EXPECT_EQ(one.scanned, other.scanned);
     EXPECT_EQ(one.left_volume, other.left_volume);

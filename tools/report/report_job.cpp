@@ -140,7 +140,9 @@ Json event_json(const JobEvent& event) {
   if (!event.digs()) return json;
   json["stall"] = event.stalled;
   json["payload_kg"] = event.payload_mass ? Json(*event.payload_mass) : Json();
-  json["dump"] = {number(event.dump.x()), number(event.dump.y()), number(event.dump.z())};
+  if (!event.keeps_load) {
+    json["dump"] = {number(event.dump.x()), number(event.dump.y()), number(event.dump.z())};
+  }
   if (event.predicted.payload_mass > 0.0) {
     json["foretold_kg"] = event.predicted.payload_mass;
     json["foretold_interval_kg"] = event.predicted.payload_interval;

@@ -36,6 +36,7 @@ struct JobEvent {
   ForetoldStep predicted;              ///< of a dig
   BasePose base;                       ///< where the machine stood; after a move: stands
   Eigen::Vector3d dump = Eigen::Vector3d::Zero();  ///< JobStep::dump, of a dig
+  bool keeps_load = false;                         ///< JobStep::keeps_load: there was no dump
   std::optional<int> truck;                        ///< that was loaded
   bool stalled = false;
   bool scanned = false;  ///< the ground was scanned in it, or after it

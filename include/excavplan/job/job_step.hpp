@@ -48,7 +48,7 @@ struct JobStep {
   double swung = 0.0;                ///< of the line of the dig, to the left of the base [rad]
   double lane = 0.0;                 ///< of that line to the left of the swing axis [m]
   DigPath path;                      ///< of a dig, in the frame of its line (dig_line())
-  /// Of the bucket pin where the bucket opens, if it does, in the site's frame [m].
+  /// Of the bucket pin where the bucket opens, where it does, in the site's frame [m].
   Eigen::Vector3d dump = Eigen::Vector3d::Zero();
   /// The bucket does not open: it goes back with its load, to which the next dig adds.
   bool keeps_load = false;
