@@ -18,21 +18,16 @@
 
 namespace excavplan::python {
 
-JobSettings settings_of_site(const std::string& description) {
-  const SiteBrief brief = read_site_brief(description);
-  JobSettings settings;
-  settings.site.soil = brief.soil;
-  settings.site.machine = load_machine(shipped_or_file("machines", brief.machine));
-  settings.site.law = usual_law(settings.site.machine, brief.soil, shipped_soil_laws());
-  settings.design = brief.job;
-  settings.surface = brief.design;
-  settings.density_percent = brief.density.percent;
-  return settings;
-}
-
 namespace {
 
 using py::arg;
+
+/// What a plain site, its machine and its usual law order.
+JobSettings settings_of_site(const std::string& description) {
+  const SiteBrief brief = read_site_brief(description);
+  const Machine machine = load_machine(shipped_or_file("machines", brief.machine));
+  return settings_of(brief, machine, usual_law(machine, brief.soil, shipped_soil_laws()));
+}
 
 // ---- orders -------------------------------------------------------------------------------------
 
@@ -262,20 +257,9 @@ void bind_history(py::module_& module) {
 
 // ---- the job ------------------------------------------------------------------------------------
 
-Scan first_scan(const py::object& given, const JobSettings& settings) {
-  if (!given.is_none()) return scan_of(given, "the scan");
-  if (settings.design.scan_file.empty()) {
-    throw Error(ErrorKind::bad_input, "the scan: none is given, and the design names none");
-  }
-  Scan scan;
-  scan.files = {settings.design.scan_file};
-  scan.z_is_up = true;
-  return scan;
-}
-
 std::unique_ptr<JobInPython> begun(const File& folder, const JobSettings& settings,
                                    const py::object& scan, const std::optional<double>& time) {
-  const Scan first = first_scan(scan, settings);
+  const Scan first = scan.is_none() ? first_scan(settings.design) : scan_of(scan, "the scan");
   const double when = time.value_or(now());
   return call([&] {
     return std::make_unique<JobInPython>(settings,

@@ -12,9 +12,6 @@
 
 namespace excavplan::python {
 
-/// What a site in words, its machine and its law order; the usual law of machine and soil.
-JobSettings settings_of_site(const std::string& description);
-
 /// A job that threads of Python share: one after the other, without the lock of the interpreter.
 class JobInPython : public JobPlanner {
  public:

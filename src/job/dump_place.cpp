@@ -59,7 +59,7 @@ std::optional<DumpPlace> in_truck(const JobSettings& settings, const Terrain& gr
   DumpPlace place;
   place.place = {middle.x(), middle.y(),
                  (std::isnan(z) ? base.z : z) + truck.bed_height + machine.bucket_length + drop};
-  place.swing = std::remainder(std::atan2(from.y(), from.x()) - base.heading, 2.0 * pi);
+  place.swing = wrapped(std::atan2(from.y(), from.x()) - base.heading);
   place.height = place.place.z() - base.z;
   place.in_truck = true;
   return place;

@@ -78,6 +78,14 @@ void require_job_settings(const JobSettings& settings) {
   require_in("job: price of a second [W]", settings.time_price, 0.0, 1e6);
 }
 
+Scan first_scan(const JobDesign& design) {
+  require(!design.scan_file.empty(), "job " + design.name + " names no first scan");
+  Scan scan;
+  scan.files = {design.scan_file};
+  scan.z_is_up = true;
+  return scan;
+}
+
 double above_design(const JobMap& map, const Terrain& ground, Cell at) {
   return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col) -
          map.target.z(at.row, at.col);

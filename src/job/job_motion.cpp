@@ -115,7 +115,7 @@ LaneTurns turns_of(const JobStep& step, const Vector2d& dump) {
   turns.first = first - turns.middle;
   turns.last = last - turns.middle;
   const double heading = step.base.heading + step.swung + turns.middle;
-  turns.dump = std::remainder(std::atan2(dump.y(), dump.x()) - heading, 2.0 * pi);
+  turns.dump = wrapped(std::atan2(dump.y(), dump.x()) - heading);
   return turns;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/angles.hpp"
 #include "base/parallel.hpp"
+#include "base/statistics.hpp"
 
 namespace excavplan {
 namespace {
@@ -22,13 +23,11 @@ constexpr double place_step = 0.25;        // of places to stand [m]
 constexpr double same_place = 1.0;         // [m]
 constexpr double farthest = 5.0;           // from what is hidden, along and across [m]
 constexpr std::size_t most_cells = 200;    // that are looked for from each place
-constexpr double least_revealed = 0.0005;  // of the design, to be worth the way
+constexpr double least_revealed = 0.0005;  // of the design, to be worth a scan
 constexpr double way_price = 0.0003;       // of the design, for a metre of the way [1/m]
 constexpr double slack = 0.01;  // by which a ray may be within the ground that it passes [m]
 constexpr double outermost =
     0.02;  // share of a cloud's points beside the sector that is counted on
-
-double turned_by(double angle) { return std::remainder(angle, 2.0 * pi); }
 
 /// The highest ground between the eye and a place lies below the line of sight.
 bool is_open(const HeightMap& surface, const Vector3d& eye, const Vector3d& at) {
@@ -92,7 +91,7 @@ class Lookout {
           places.push_back({first.x() + i * place_step,
                             first.y() + k * place_step,
                             {},
-                            turned_by(2.0 * pi * h / headings)});
+                            wrapped(2.0 * pi * h / headings)});
         }
       }
     }
@@ -125,7 +124,7 @@ class Lookout {
     const double height = base.z + look.from.z() - at.z();
     if (way.norm() > look.range || std::atan2(height, way.norm()) > look.steepest) return false;
     const double azimuth = std::atan2(way.y(), way.x()) - base.heading - look.azimuth;
-    if (std::abs(turned_by(azimuth)) > look.half_sector) return false;
+    if (std::abs(wrapped(azimuth)) > look.half_sector) return false;
     return is_open(surface_, {eye.x(), eye.y(), at.z() + height}, at);
   }
 
@@ -136,14 +135,6 @@ class Lookout {
   double weight_ = 0.0;  ///< of one of `hidden_`, as a share of the design
 };
 
-/// From the lowest to the highest but a share on either side.
-std::pair<double, double> spread_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto last = static_cast<double>(values.size() - 1);
-  return {values[static_cast<std::size_t>(outermost * last)],
-          values[static_cast<std::size_t>((1.0 - outermost) * last)]};
-}
-
 /// What points about their sensor say of its view; its azimuth is that of the site.
 SensorLook look_along(const std::vector<Vector3d>& ways) {
   Vector2d sum = Vector2d::Zero();
@@ -151,16 +142,16 @@ SensorLook look_along(const std::vector<Vector3d>& ways) {
   const double middle = std::atan2(sum.y(), sum.x());
   std::vector<double> off, ranges, steep;
   for (const Vector3d& way : ways) {
-    off.push_back(turned_by(std::atan2(way.y(), way.x()) - middle));
+    off.push_back(wrapped(std::atan2(way.y(), way.x()) - middle));
     ranges.push_back(way.head<2>().norm());
     steep.push_back(std::atan2(-way.z(), ranges.back()));
   }
-  const auto [right, left] = spread_of(std::move(off));
+  const double right = quantile(off, outermost), left = quantile(off, 1.0 - outermost);
   SensorLook look;
   look.azimuth = middle + 0.5 * (left + right);
   look.half_sector = 0.5 * (left - right);
-  look.range = spread_of(std::move(ranges)).second;
-  look.steepest = spread_of(std::move(steep)).second;
+  look.range = quantile(std::move(ranges), 1.0 - outermost);
+  look.steepest = quantile(std::move(steep), 1.0 - outermost);
   return look;
 }
 
@@ -181,7 +172,7 @@ std::vector<SensorLook> looks_of(const Scan& scan, const BasePose& base) {
     SensorLook look = look_along(ways);
     look.from.head<2>() = back * (eye.head<2>() - Vector2d(base.x, base.y));
     look.from.z() = eye.z() - base.z;
-    look.azimuth = turned_by(look.azimuth - base.heading);
+    look.azimuth = wrapped(look.azimuth - base.heading);
     looks.push_back(look);
   }
   return looks;

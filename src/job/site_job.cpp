@@ -131,7 +131,7 @@ struct SiteJob::State {
   std::optional<JobStep> dig_step(bool finishing);
   JobStep move_step(const JobStation& station);
   JobStep leave();
-  std::optional<JobStation> next_place() const;
+  std::optional<JobStation> next_place(double seen) const;
   BasePose base_of(const JobStation& station) const;
   bool wants_passes(const BasePose& base) const;
   bool may_keep(const PlannedDig& dig) const;
@@ -282,11 +282,10 @@ JobStep SiteJob::State::decide() {
 }
 
 /// Where the present station is; nothing if there is nothing to do.
-std::optional<JobStation> SiteJob::State::next_place() const {
+std::optional<JobStation> SiteJob::State::next_place(double seen) const {
   const JobStation& station = stations[record.station];
-  const JobProgress now = progress();
   if (station.is_lookout()) {
-    if (now.seen >= well_seen) return std::nullopt;
+    if (seen >= well_seen) return std::nullopt;
     return best_lookout({frame, settings, map, ground.expected(), ground.seen(),
                          record.looks.empty() ? usual_looks() : record.looks, record.base});
   }
@@ -300,7 +299,7 @@ JobStep SiteJob::State::leave() {
   const JobProgress now = progress();
   while (!(now.is_finished && now.seen >= well_seen) && record.station + 1 < stations.size()) {
     ++record.station;
-    const auto place = next_place();
+    const auto place = next_place(now.seen);
     if (!place) continue;
     record.passes_here = 0;
     record.fruitless = 0;

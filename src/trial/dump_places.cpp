@@ -62,8 +62,7 @@ PlainDump DumpPlaces::from(const BasePose& base, double heading,
             bed ? base.z + *bed + over_bed : std::max(base.z + least_height, z + over_ground);
         const double away = std::hypot(x - base.x, y - base.y);
         const double reach = pin_reach(machine_, pin - base.z) - spare;
-        const double swing =
-            std::abs(std::remainder(std::atan2(y - base.y, x - base.x) - heading, 2.0 * pi));
+        const double swing = std::abs(wrapped(std::atan2(y - base.y, x - base.x) - heading));
         // Out of reach is the last choice.
         const double beyond = std::max({0.0, away - reach, nearest - away});
         const double cost = swing + of_height * std::max(0.0, z - base.z) + 100.0 * beyond;

@@ -154,6 +154,17 @@ SiteBrief read_site_brief(const std::string& path) {
   return brief;
 }
 
+JobSettings settings_of(const SiteBrief& site, const Machine& machine, const DensityLaw& law) {
+  JobSettings settings;
+  settings.site.soil = site.soil;
+  settings.site.machine = machine;
+  settings.site.law = law;
+  settings.design = site.job;
+  settings.surface = site.design;
+  settings.density_percent = site.density.percent;
+  return settings;
+}
+
 HiddenSite read_hidden_site(const std::string& folder, double cell_size) {
   require_in("true ground: cell size [m]", cell_size, 0.005, 0.25);
   HiddenSite site;

@@ -340,7 +340,7 @@ class PlainPlanner : public JobPlanner {
 
   JobStep with(const DigPath& path, const Lane& lane, JobAction what) {
     JobStep step = step_of(what);
-    step.swung = std::remainder(site_.job.words->heading - base_.heading, 2.0 * pi);
+    step.swung = wrapped(site_.job.words->heading - base_.heading);
     step.lane = lane.left - base_left();
     step.path = path;
     step.dump = dump_.pin;

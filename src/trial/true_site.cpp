@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <excavplan/base/error.hpp>
@@ -36,8 +35,6 @@ constexpr std::uint64_t tracking_stream = 1;
 constexpr std::uint64_t scale_stream = 2;
 constexpr std::uint64_t landing_stream = 3;
 constexpr std::uint64_t scan_stream = 4;
-
-double turned(double angle) { return std::remainder(angle, 2.0 * pi); }
 
 /// The poses that the machine came to.
 DigPath driven(const DigPath& path, const DigResult& dig) {
@@ -244,7 +241,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
 CycleOptions TrueSite::State::cycle_after(const JobStep& job, double from,
                                           const Vector2d& dump) const {
   CycleOptions cycle;
-  cycle.swing = turned(std::atan2(dump.y() - real.y, dump.x() - real.x) - from);
+  cycle.swing = wrapped(std::atan2(dump.y() - real.y, dump.x() - real.x) - from);
   cycle.dump_height = std::max(0.0, job.dump.z() - real.z);
   cycle.keeps_load = job.keeps_load;
   return cycle;

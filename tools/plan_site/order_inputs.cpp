@@ -157,13 +157,9 @@ Order finished(Order order, const std::string& machine_word) {
 Order order_of_site(const std::string& path, std::optional<double> density) {
   const SiteBrief brief = read_site_brief(path);
   Order order;
-  order.settings.site.soil = brief.soil;
-  order.settings.site.machine = machine_named(brief.machine);
-  order.settings.design = brief.job;
-  order.settings.surface = brief.design;
+  order.settings = settings_of(brief, machine_named(brief.machine), {});  // finished() sets the law
   order.settings.density_percent = density.value_or(brief.density.percent);
-  order.first.files = {brief.job.scan_file};
-  order.first.z_is_up = true;
+  order.first = first_scan(brief.job);
   return finished(std::move(order), brief.machine);
 }
 

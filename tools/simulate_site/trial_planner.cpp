@@ -48,25 +48,6 @@ class OwnPlanner : public JobPlanner {
   SiteJob job_;
 };
 
-JobSettings settings_of(const SiteBrief& site, const SoilKind& soil, const Machine& machine) {
-  JobSettings settings;
-  settings.site.soil = soil;
-  settings.site.machine = machine;
-  settings.site.law =
-      load_density_law(shipped_or_file("laws", machine.name + "-" + site.soil.name));
-  settings.design = site.job;
-  settings.surface = site.design;
-  settings.density_percent = site.density.percent;
-  return settings;
-}
-
-Scan first_scan(const SiteBrief& site) {
-  Scan scan;
-  scan.files = {site.job.scan_file};
-  scan.z_is_up = true;
-  return scan;
-}
-
 }  // namespace
 
 std::vector<std::string> planner_words() {
@@ -81,9 +62,14 @@ std::unique_ptr<JobPlanner> planner_of(const std::string& word, const HiddenSite
     if (policy.word == word) return plain_planner(policy, site.known, site.first_scan, machine);
   }
   const bool knows = word == "known";
-  JobSettings settings = settings_of(site.known, knows ? site.soil : site.known.soil, machine);
-  if (knows) settings.density_percent = mean_density(site);
-  return std::make_unique<OwnPlanner>(settings, first_scan(site.known));
+  const std::string law = machine.name + "-" + site.known.soil.name;
+  JobSettings settings =
+      settings_of(site.known, machine, load_density_law(shipped_or_file("laws", law)));
+  if (knows) {
+    settings.site.soil = site.soil;
+    settings.density_percent = mean_density(site);
+  }
+  return std::make_unique<OwnPlanner>(settings, first_scan(settings.design));
 }
 
 }  // namespace excavplan::tools

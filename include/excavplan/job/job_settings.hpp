@@ -6,6 +6,7 @@
 
 #include <excavplan/design/design_surface.hpp>
 #include <excavplan/design/job_design.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/site/site_settings.hpp>
 
 namespace excavplan {
@@ -25,5 +26,9 @@ struct JobSettings {
 /// @throws Error (bad_input) as require_job(), require_machine() and require_soil(), or if a number
 /// is out of range, there is no start, or the machine states no swing or engine
 void require_job_settings(const JobSettings& settings);
+
+/// The scan of the ground that a design's description names, in the frame of its site.
+/// @throws Error (bad_input) if it names none
+Scan first_scan(const JobDesign& design);
 
 }  // namespace excavplan

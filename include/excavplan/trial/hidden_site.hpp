@@ -8,6 +8,7 @@
 
 #include <excavplan/design/job_design.hpp>
 #include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_settings.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -80,6 +81,8 @@ inline constexpr double truth_cell = 0.025;
 /// Reads the description of a plain site, its design and the soil that it names.
 /// @throws Error (bad_file) naming file, key, value and rule
 SiteBrief read_site_brief(const std::string& path);
+/// The job of a site, by a machine and a law.
+JobSettings settings_of(const SiteBrief& site, const Machine& machine, const DensityLaw& law);
 
 /// Reads a plain site with its folder `hidden`.
 ///
