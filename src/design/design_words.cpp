@@ -187,6 +187,7 @@ DesignSurface design_of_words(const DesignWords& words, const HeightMap& ground)
   design.name = name_of(words.kind);
   design.shape = Shape(words, ground).tin();
   design.cuts_only = true;
+  design.hangs_on_scan = words.depth.has_value();
   design.unit_told_by = "words";
   return design;
 }

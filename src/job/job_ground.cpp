@@ -12,6 +12,7 @@
 
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "site/site_survey.hpp"
 
 namespace excavplan {
 namespace {
@@ -19,21 +20,21 @@ namespace {
 // Numbers of our own choice.
 constexpr std::size_t least_cells = 40;  // of a cut that tells its height
 constexpr double least_cut = 0.01;       // of a cell that was cut [m]
-constexpr double cleanest = 0.005;       // loose soil on it, at most [m]
 constexpr double steeper = 0.98;         // than the angle of repose by its tangent
 constexpr double most_off = 0.1;         // more is no error of tracking [m]
 
+/// Of all that was cut, with the soil that lies on it again.
 std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
                                 const Terrain& scanned) {
   if (before.loose.size() == 0 || !same_grid(scanned.bank, expected.bank)) return std::nullopt;
   if (!same_grid(before.bank, expected.bank)) return std::nullopt;
   std::vector<double> off;
   for_each_cell(expected.bank.z, [&](Cell at) {
-    const double level = expected.bank.z(at.row, at.col);
-    if (!(before.bank.z(at.row, at.col) - level > least_cut)) return;
-    if (expected.loose(at.row, at.col) > cleanest) return;
+    const double bank = expected.bank.z(at.row, at.col);
+    if (!(before.bank.z(at.row, at.col) - bank > least_cut)) return;
     const double surface = scanned.bank.z(at.row, at.col) + scanned.loose(at.row, at.col);
-    if (std::abs(surface - level) < most_off) off.push_back(surface - level);
+    const double above = surface - bank - expected.loose(at.row, at.col);
+    if (std::abs(above) < most_off) off.push_back(above);
   });
   if (off.size() < least_cells) return std::nullopt;
   return median(off);
@@ -71,6 +72,15 @@ void keep_unseen(const Terrain& expected, const Eigen::ArrayXXd& seen, double ti
   });
 }
 
+/// What lies between returns is known, and not seen.
+void keep_between(const Mask& returns, const Eigen::ArrayXXd& seen, double time,
+                  GroundState& scanned) {
+  for_each_cell(returns, [&](Cell at) {
+    double& when = scanned.seen(at.row, at.col);
+    if (when >= time && !returns(at.row, at.col)) when = seen(at.row, at.col);
+  });
+}
+
 /// What a dig changes is not seen.
 void forget_changed(const Terrain& before, const TerrainPatch& patch, Eigen::ArrayXXd& seen) {
   for_each_cell(patch.bank, [&](Cell at) {
@@ -86,26 +96,39 @@ void forget_changed(const Terrain& before, const TerrainPatch& patch, Eigen::Arr
 JobGround::JobGround(const std::string& folder, const JobSettings& settings)
     : folder_(folder), settings_(settings), site_(folder, settings.site, SiteAccess::write) {}
 
-void JobGround::expect(const JobStep& dig, double height_bias) {
+void JobGround::expect(const JobStep& step, double height_bias) {
+  if (!step.moves_front()) return;
+  if (step.dumps_first) heap(step, step.carried->volume);
+  if (step.digs()) dig(step, height_bias);
+  unseen_.push_back(step);
+}
+
+void JobGround::dig(const JobStep& step, double height_bias) {
   const Machine& machine = settings_.site.machine;
   const SoilKind& soil = settings_.site.soil;
   const HeightMapSimulator simulator(machine, soil, settings_.density_percent);
-  DigLine line = dig_line(dig.base, dig.swung, dig.lane);
+  DigLine line = dig_line(step.base, step.swung, step.lane);
   line.z += height_bias;
   const SoilVoids voids = soil_voids(soil, settings_.density_percent);
-  const DigResult result = dig_along(simulator, machine, expected_, {line, voids, dig.path});
+  const DigResult result = dig_along(simulator, machine, expected_, {line, voids, step.path});
   forget_changed(expected_, result.patch, seen_);
   apply(result.patch, expected_);
-  kept_ += result.payload_volume;
-  if (!dig.keeps_load) {
-    const double volume = std::exchange(kept_, 0.0);
-    if (!dig.truck)
-      heap_soil(expected_, soil, settings_.density_percent, dig.dump.head<2>(), volume);
-  }
-  unseen_.push_back(dig);
+  const bool carries = step.carried && !step.dumps_first;
+  if (!step.keeps_load) heap(step, result.payload_volume + (carries ? step.carried->volume : 0.0));
 }
 
-std::optional<double> JobGround::take_in(const SiteEvent& event) {
+void JobGround::heap(const JobStep& step, double volume) {
+  if (step.truck) return;
+  heap_soil(expected_, settings_.site.soil, settings_.density_percent, step.dump.head<2>(), volume);
+}
+
+std::size_t JobGround::unseen_digs(std::optional<JobAction> kind) const {
+  return static_cast<std::size_t>(std::count_if(
+      unseen_.begin(), unseen_.end(),
+      [&](const JobStep& each) { return each.digs() && (!kind || each.what == *kind); }));
+}
+
+ScanNews JobGround::take_in(const SiteEvent& event) {
   const Terrain expected = std::move(expected_);
   const GroundState before = std::move(scanned_);
   const bool is_first = before.seen.size() == 0;
@@ -115,17 +138,20 @@ std::optional<double> JobGround::take_in(const SiteEvent& event) {
   const bool has_grown = !is_first && !same_grid(cells, site_.ground().terrain.bank);
   scanned_ = has_grown ? site_.ground_for({}, cells.extent(), cells.cell_size) : site_.ground();
   scanned_.terrain.doubts.clear();
-  if (!is_first) keep_unseen(expected, seen_, event.time, scanned_);
+  if (!is_first) {
+    keep_unseen(expected, seen_, event.time, scanned_);
+    keep_between(returns_in(event.scan, scanned_.terrain.bank), seen_, event.time, scanned_);
+  }
   hold_steep(settings_.site.soil, scanned_.terrain);
   begin_at_scan();
-  return update.taken ? cut_above(expected, before.terrain, scanned_.terrain) : std::nullopt;
+  if (!update.taken) return {};
+  return {cut_above(expected, before.terrain, scanned_.terrain), update.alignment};
 }
 
 void JobGround::begin_at_scan() {
   expected_ = scanned_.terrain;
   seen_ = scanned_.seen;
   unseen_.clear();
-  kept_ = 0.0;
 }
 
 std::string JobGround::file_of(long long number) const {

@@ -16,6 +16,14 @@
 
 namespace excavplan {
 
+/// What a scan tells besides the ground.
+struct ScanNews {
+  /// Median of how far the cuts since the last scan lie above where they were expected [m]; nothing
+  /// of too few cells.
+  std::optional<double> cut_off;
+  std::optional<Alignment> alignment;  ///< SiteUpdate
+};
+
 /// The site of a job with the digs that no scan has shown yet: where a scan does not see what was
 /// dug, it stays as foretold.
 class JobGround {
@@ -27,15 +35,15 @@ class JobGround {
   const Terrain& expected() const { return expected_; }
   /// When each cell was last seen as it is now, since 1970-01-01 UTC [s]; NaN: never, or dug since.
   const Eigen::ArrayXXd& seen() const { return seen_; }
-  /// Digs since the last scan, in their order.
+  /// Digs and dumps since the last scan, in their order.
   const std::vector<JobStep>& unseen() const { return unseen_; }
+  /// @param kind  of these alone
+  std::size_t unseen_digs(std::optional<JobAction> kind = {}) const;
 
-  /// The dig as the simulator foretells it, with the edge so far above the path [m].
-  void expect(const JobStep& dig, double height_bias);
+  /// What the simulator foretells of a step, with the edge so far above the path [m].
+  void expect(const JobStep& step, double height_bias);
   /// Takes in a scan of the ground.
-  /// @return the median of how far the cuts since the last scan lie above where they were expected
-  /// [m], over cells without loose soil; nothing of too few
-  std::optional<double> take_in(const SiteEvent& event);
+  ScanNews take_in(const SiteEvent& event);
 
   /// Writes the ground at the last scan. @param number  of the site's updates
   void save(long long number) const;
@@ -46,6 +54,8 @@ class JobGround {
   const std::vector<Warning>& warnings() const { return warnings_; }
 
  private:
+  void dig(const JobStep& step, double height_bias);
+  void heap(const JobStep& step, double volume);
   std::string file_of(long long number) const;
   void begin_at_scan();
 
@@ -56,7 +66,6 @@ class JobGround {
   Terrain expected_;     ///< with what was dug since
   Eigen::ArrayXXd seen_;
   std::vector<JobStep> unseen_;
-  double kept_ = 0.0;  ///< loose, in the bucket, of digs since the last scan [m^3]
   std::vector<Warning> warnings_;
 };
 

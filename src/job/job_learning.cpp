@@ -41,6 +41,13 @@ void LearntNumber::learn(double reading, double reading_variance) {
   variance *= 1.0 - gain;
 }
 
+void ScanDatum::learn(const Alignment& scan) {
+  const Motion& motion = scan.found;
+  const Eigen::Vector2d rise(-motion[4], motion[3]);
+  sum += Eigen::Vector3d(motion[2] - rise.dot(scan.centre.head<2>()), rise.x(), rise.y());
+  ++scans;
+}
+
 double LearntNumber::sd() const { return std::sqrt(variance); }
 
 ForetoldStep JobLearning::foretell(const PlannedDig& dig) const {

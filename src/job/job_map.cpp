@@ -10,6 +10,7 @@
 
 #include <excavplan/design/cut_and_fill.hpp>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/plan_geometry.hpp"
 #include "ground/window.hpp"
@@ -141,6 +142,16 @@ JobFrame frame_of(const JobSettings& settings, const JobMap& map) {
   frame.left = box.max().y() + half;
   frame.is_battered = has_batter(map);
   return frame;
+}
+
+JobFrame reversed(const JobFrame& frame) {
+  JobFrame back = frame;
+  back.heading = wrapped(frame.heading + pi);
+  back.near = -frame.far;
+  back.far = -frame.near;
+  back.right = -frame.left;
+  back.left = -frame.right;
+  return back;
 }
 
 }  // namespace excavplan

@@ -44,5 +44,7 @@ struct JobFrame {
 
 /// Along the heading in which the machine starts: it works backwards.
 JobFrame frame_of(const JobSettings& settings, const JobMap& map);
+/// The same line from its other end.
+JobFrame reversed(const JobFrame& frame);
 
 }  // namespace excavplan

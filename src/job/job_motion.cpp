@@ -22,9 +22,6 @@ using Eigen::Vector2d;
 
 constexpr double motion_cell = 0.1;  // of the ground that the front passes over; ours [m]
 
-/// Swing of a lane from the direction of its line.
-double turn_at(double lane, double along) { return std::atan2(lane, along); }
-
 /// The path of a lane in the plane of the front, which reaches out to it.
 std::variant<DigPath, BlockedWay> reaching_out(const Machine& machine, DigPath path, double lane) {
   for (std::vector<DigPose>* poses : {&path.approach, &path.poses}) {
@@ -69,59 +66,9 @@ Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLi
   return view;
 }
 
-/// Turns of the upper structure in a lane, from the direction in which the way was laid out [rad].
-struct LaneTurns {
-  double lane = 0.0;
-  double middle = 0.0;  ///< of the lane, from its line: the direction of the way
-  double first = 0.0;   ///< at the begin of the dig
-  double last = 0.0;    ///< at its end
-  double dump = 0.0;
-
-  double of(const Machine& machine, const WayPose& pose) const {
-    const double swing = pose.joints[3];
-    switch (pose.phase) {
-      case DigPhase::approach:
-        return first;
-      case DigPhase::penetrate:
-      case DigPhase::drag:
-      case DigPhase::scoop: {
-        const double reach = forward_kinematics(machine, pose.joints.head<3>()).x;
-        return std::asin(std::min(1.0, std::max(-1.0, lane / reach))) - middle;
-      }
-      case DigPhase::lift:
-        return last;
-      case DigPhase::swing:
-      case DigPhase::dump:
-        return last + swing * share(last);
-      case DigPhase::back:
-        return first + swing * share(first);
-    }
-    return swing;
-  }
-
- private:
-  double share(double from) const { return dump != 0.0 ? (dump - from) / dump : 1.0; }
-};
-
-LaneTurns turns_of(const JobStep& step, const Vector2d& dump) {
-  LaneTurns turns;
-  turns.lane = step.lane;
-  const std::vector<DigPose>& poses = step.path.poses;
-  std::size_t end = poses.size() - 1;
-  while (end > 0 && poses[end].phase == DigPhase::lift) --end;
-  const double first = turn_at(step.lane, poses.front().bucket.x);
-  const double last = turn_at(step.lane, poses[end].bucket.x);
-  turns.middle = 0.5 * (first + last);
-  turns.first = first - turns.middle;
-  turns.last = last - turns.middle;
-  const double heading = step.base.heading + step.swung + turns.middle;
-  turns.dump = wrapped(std::atan2(dump.y(), dump.x()) - heading);
-  return turns;
-}
-
 /// What the dig loads the joints with, and the ground that it leaves, in the frame of the way.
 DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobStep& step,
-                const DigLine& turned) {
+                const DigLine& line) {
   const Machine& machine = settings.site.machine;
   const SoilKind& soil = settings.site.soil;
   const HeightMapSimulator simulator(machine, soil, settings.density_percent);
@@ -132,10 +79,44 @@ DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobSte
   apply(dig.patch, after);
   DigLoad load;
   if (!dig.stall) load.torques = dig.torques;
-  load.payload_mass = std::max(dig.payload_mass, step.predicted.payload_mass);
+  load.carried = step.carried ? loose_mass(soil, step.carried->volume) : 0.0;
+  load.payload_mass = std::max(dig.payload_mass, step.predicted.payload_mass) +
+                      (step.dumps_first ? 0.0 : load.carried);
   load.ground_after =
-      GroundAlong(after, turned, swing_extent(machine), motion_cell).terrain().surface();
+      GroundAlong(after, line, swing_extent(machine), motion_cell).terrain().surface();
   return load;
+}
+
+CycleWayOptions way_options(const JobStep& step) {
+  const Vector2d dump = step.dump.head<2>() - Vector2d(step.base.x, step.base.y);
+  CycleWayOptions options;
+  options.lane = step.lane;
+  options.whole_cycle = true;
+  options.cycle.swing = wrapped(std::atan2(dump.y(), dump.x()) - step.base.heading - step.swung);
+  options.cycle.keeps_load = step.keeps_load;
+  options.cycle.dump_height = std::max(0.0, step.dump.z() - step.base.z);
+  options.dump_radius = dump.norm();
+  options.dumps_first = step.dumps_first;
+  if (!step.carried) return options;
+  options.start = step.carried->joints;
+  (*options.start)[3] -= step.swung;
+  return options;
+}
+
+/// In the frame of the line of the dig.
+std::variant<Way, BlockedWay> way_of_step(const JobSettings& settings, const Machine& machine,
+                                          const Terrain& ground, const JobStep& step) {
+  const DigLine line = dig_line(step.base, step.swung);
+  const Terrain seen = seen_along(settings, ground, line);
+  const CycleWayOptions options = way_options(step);
+  if (step.path.poses.empty()) {
+    const double payload = loose_mass(settings.site.soil, step.carried->volume);
+    return way_of_dump(machine, seen, payload, options);
+  }
+  auto path = reaching_out(machine, step.path, step.lane);
+  if (const auto* blocked = std::get_if<BlockedWay>(&path)) return *blocked;
+  return way_of_cycle(machine, seen, std::get<DigPath>(path), load_of(settings, ground, step, line),
+                      options);
 }
 
 }  // namespace
@@ -146,26 +127,11 @@ std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, cons
   Trajectory motion;
   motion.machine = machine.name;
   motion.robot_joints = machine.robot_joints;
-  if (step.path.poses.empty()) return motion;
-  auto path = reaching_out(machine, step.path, step.lane);
-  if (const auto* blocked = std::get_if<BlockedWay>(&path)) return *blocked;
-  const Vector2d dump = step.dump.head<2>() - Vector2d(step.base.x, step.base.y);
-  const LaneTurns turns = turns_of(step, dump);
-  const DigLine turned = dig_line(step.base, step.swung + turns.middle);
-
-  CycleWayOptions cycle;
-  cycle.whole_cycle = true;
-  cycle.cycle.swing = turns.dump;
-  cycle.cycle.keeps_load = step.keeps_load;
-  cycle.cycle.dump_height = std::max(0.0, step.dump.z() - step.base.z);
-  cycle.dump_radius = dump.norm();
-  auto laid = way_of_cycle(machine, seen_along(settings, ground, turned), std::get<DigPath>(path),
-                           load_of(settings, ground, step, turned), cycle);
+  if (!step.moves_front()) return motion;
+  auto laid = way_of_step(settings, machine, ground, step);
   if (auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
   Way& way = std::get<Way>(laid);
-  for (WayPose& pose : way.poses) {
-    pose.joints[3] = step.swung + turns.middle + turns.of(machine, pose);
-  }
+  for (WayPose& pose : way.poses) pose.joints[3] += step.swung;
   motion = time_way(machine, way, options);
   motion.warnings = way.warnings;
   for (Warning& each : load_warnings(machine, way)) {

@@ -84,6 +84,7 @@ std::string ply_of(const Tin& tin) {
 Json keep_design(const std::string& folder, const DesignSurface& design) {
   Json json = {{"name", design.name}, {"cuts_only", design.cuts_only}, {"unit", design.unit}};
   json["unit_told_by"] = design.unit_told_by;
+  json["hangs_on_scan"] = design.hangs_on_scan;
   if (const auto* tin = std::get_if<Tin>(&design.shape)) {
     write_own_file(folder + '/' + tin_name, ply_of(*tin));
     json["origin_m"] = {tin->origin.x(), tin->origin.y(), tin->origin.z()};
@@ -108,6 +109,7 @@ DesignSurface kept_design(const std::string& folder, JsonObject object) {
   design.name = object.text("name");
   design.cuts_only = object.flag("cuts_only");
   design.unit = object.number("unit");
+  design.hangs_on_scan = object.has("hangs_on_scan") && object.flag("hangs_on_scan");
   design.unit_told_by = object.text("unit_told_by");
   object.done();
   return design;

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "excavplan job";
-constexpr int version = 2;
+constexpr int version = 3;
 constexpr int numbers_of_pose = 6;
 
 constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,
@@ -87,6 +87,23 @@ BasePose read_base(JsonObject& object) {
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
+Json joints_json(const FrontJoints& joints) { return {joints[0], joints[1], joints[2], joints[3]}; }
+
+FrontJoints read_joints(JsonObject& object, const char* key) {
+  const std::vector<double> numbers = object.numbers(key, 4);
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+Json carried_json(const CarriedLoad& carried) {
+  return {{"loose_m3", carried.volume}, {"joints_rad", joints_json(carried.joints)}};
+}
+
+CarriedLoad read_carried(JsonObject object) {
+  CarriedLoad carried = {object.number("loose_m3", 0.0, 1e6), read_joints(object, "joints_rad")};
+  object.done();
+  return carried;
+}
+
 Json step_json(const JobStep& step) {
   Json json = {{"id", step.id},
                {"what", name(step.what)},
@@ -95,6 +112,7 @@ Json step_json(const JobStep& step) {
                {"lane_m", step.lane},
                {"dump_m", {step.dump.x(), step.dump.y(), step.dump.z()}},
                {"keeps_load", step.keeps_load},
+               {"dumps_first", step.dumps_first},
                {"truck", step.truck.value_or(0)},
                {"payload_kg", step.predicted.payload_mass},
                {"payload_interval_kg", step.predicted.payload_interval},
@@ -104,8 +122,8 @@ Json step_json(const JobStep& step) {
                {"trustworthy", step.trustworthy},
                {"warnings", warnings_json(step.warnings)},
                {"reason", step.reason}};
-  const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;
-  if (digs) json["path"] = path_json(step.path);
+  if (step.carried) json["carried"] = carried_json(*step.carried);
+  if (step.digs()) json["path"] = path_json(step.path);
   return json;
 }
 
@@ -119,6 +137,9 @@ JobStep read_step(JsonObject object) {
   const std::vector<double> dump = object.numbers("dump_m", 3);
   step.dump = {dump[0], dump[1], dump[2]};
   step.keeps_load = object.flag("keeps_load");
+  step.dumps_first = object.flag("dumps_first");
+  if (object.has("carried")) step.carried = read_carried(object.object("carried"));
+  if (step.dumps_first && !step.carried) object.fail("dumps_first", "has nothing to dump");
   const int truck = static_cast<int>(object.number("truck", 0, 1e9));
   if (truck > 0) step.truck = truck;
   ForetoldStep& foretold = step.predicted;
@@ -155,10 +176,12 @@ PlannedDig read_planned(const std::vector<double>& numbers) {
 }
 
 Json learning_json(const JobLearning& learning) {
-  return {learning.height_bias.mean, learning.height_bias.variance, learning.payload.mean,
-          learning.payload.variance, learning.energy.mean,          learning.energy.variance,
-          learning.payload_scatter,  learning.energy_scatter,       learning.strength.mean,
-          learning.strength.variance};
+  return {learning.height_bias.mean,  learning.height_bias.variance, learning.payload.mean,
+          learning.payload.variance,  learning.energy.mean,          learning.energy.variance,
+          learning.payload_scatter,   learning.energy_scatter,       learning.strength.mean,
+          learning.strength.variance, learning.floor.mean,           learning.floor.variance,
+          learning.datum.sum.x(),     learning.datum.sum.y(),        learning.datum.sum.z(),
+          learning.datum.scans};
 }
 
 JobLearning read_learning(const std::vector<double>& numbers) {
@@ -169,6 +192,9 @@ JobLearning read_learning(const std::vector<double>& numbers) {
   learning.payload_scatter = numbers[6];
   learning.energy_scatter = numbers[7];
   learning.strength = {numbers[8], numbers[9]};
+  learning.floor = {numbers[10], numbers[11]};
+  learning.datum.sum = {numbers[12], numbers[13], numbers[14]};
+  learning.datum.scans = static_cast<int>(numbers[15]);
   return learning;
 }
 
@@ -191,7 +217,6 @@ template <typename Record, typename Visit>
 void for_each_number(Record& record, Visit visit) {
   visit("deepest_cut_m", record.deepest_cut);
   visit("truck_load_kg", record.truck_load);
-  visit("carried_m3", record.carried);
   visit("strength_share", record.strength_share);
   visit("first_volume_m3", record.progress.design_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
@@ -212,6 +237,8 @@ Json record_json(const JobRecord& record) {
   for_each_count(record, [&](const char* key, int value) { json[key] = value; });
   for_each_number(record, [&](const char* key, double value) { json[key] = value; });
   json["learning"] = learning_json(record.learning);
+  json["rests_at_rad"] = joints_json(record.rests_at);
+  if (record.carried) json["carried"] = carried_json(*record.carried);
   if (record.present) json["present"] = step_json(*record.present);
   if (record.planned) json["planned"] = planned_json(*record.planned);
   json["barren"] = Json::array();
@@ -246,7 +273,9 @@ JobRecord read_record(const std::string& path) {
   });
   for_each_number(record,
                   [&](const char* key, double& value) { value = object.number(key, -1e12, 1e12); });
-  record.learning = read_learning(object.numbers("learning", 10));
+  record.learning = read_learning(object.numbers("learning", 16));
+  record.rests_at = read_joints(object, "rests_at_rad");
+  if (object.has("carried")) record.carried = read_carried(object.object("carried"));
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));
   const std::vector<double> barren = object.numbers("barren");

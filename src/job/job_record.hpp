@@ -38,9 +38,10 @@ struct JobRecord {
   int fruitless = 0;                  ///< finishing passes in succession that lifted little
   std::vector<DigStart> barren;   ///< digs from this station that lifted much less than foretold
   std::vector<SensorLook> looks;  ///< of the last scan that told its sensor
-  double carried = 0.0;           ///< loose, in the bucket since the last dump [m^3]
-  double truck_load = 0.0;        ///< in the present truck [kg]
-  int trucks = 1;                 ///< so far
+  std::optional<CarriedLoad> carried;
+  FrontJoints rests_at = FrontJoints::Zero();  ///< of the front after the present step [rad]
+  double truck_load = 0.0;                     ///< in the present truck [kg]
+  int trucks = 1;                              ///< so far
   JobLearning learning;
   JobProgress progress;  ///< what is counted; what is measured of the ground is left out
 };

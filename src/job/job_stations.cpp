@@ -18,7 +18,7 @@ constexpr double end_wall = 0.67;       // of that reach to the far end: nearer 
                                         // little for a steep cut
 constexpr double overlap = 0.25;        // of what is dug from two places in succession [m]
 constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
-constexpr double end_margin = 0.04;     // to the ends of the design, likewise [m]
+constexpr double end_margin = 0.0;      // to the ends of the design, likewise [m]
 constexpr double lane_overlap = 0.1;    // of two lanes [m]
 constexpr double standing_step = 0.2;   // of the ground under the tracks that is looked at [m]
 constexpr double beside_edge = 0.6;     // of tracks that stand beside the design [m]
@@ -106,6 +106,18 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
       const auto& lanes = groups[i % 2 == 0 ? g : groups.size() - 1 - g];
       stations.push_back({along, 0.5 * (lanes.front() + lanes.back()), lanes});
     }
+  }
+  return stations;
+}
+
+std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings& settings) {
+  const JobFrame back = reversed(frame);
+  const Machine& machine = settings.site.machine;
+  std::vector<JobStation> stations;
+  for (const auto& lanes : groups_of(lanes_of(back, machine.bucket.width_outside))) {
+    stations.push_back(
+        {back.near - nearest_of(machine), 0.5 * (lanes.front() + lanes.back()), lanes});
+    stations.back().is_beyond = true;
   }
   return stations;
 }

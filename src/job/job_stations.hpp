@@ -21,6 +21,7 @@ struct JobStation {
   double beside = 0.0;             ///< [m]
   std::vector<double> lanes = {};  ///< that it digs from there, beside the line of work [m]
   double turned = 0.0;             ///< from the line of work [rad]
+  bool is_beyond = false;          ///< the far end: all of it is along the reversed() line
 
   bool is_lookout() const { return lanes.empty(); }  ///< it only scans from there
 };
@@ -29,6 +30,11 @@ struct JobStation {
 /// each one all that is within reach ahead is dug; where the design is wider than the lanes of one
 /// place, the machine moves aside before it goes back.
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
+
+/// The places beyond the far end, from which it can be dug as the near end is from the last ones: a
+/// bucket that comes up along a wall leaves it steep in soil of any strength, one that goes down
+/// only where the machine is heavy enough.
+std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings& settings);
 
 /// Whether the machine has ground under its tracks there, not too near to the design and off the
 /// places for soil and what must not be touched.

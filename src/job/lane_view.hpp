@@ -23,6 +23,7 @@ struct DigStart {
 struct ShapeChange {
   double shaped = 0.0;    ///< less that is out of shape, of what counts under the bucket [m^3]
   double cleared = 0.0;   ///< of what lies above the design there [m^3]
+  double finished = 0.0;  ///< brought within the tolerance, less what left it, there [m^2]
   double gained = 0.0;    ///< of what lies above the design [m^3]
   double at_end = 0.0;    ///< of that, at the end of the work [m^3]
   double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
@@ -31,8 +32,9 @@ struct ShapeChange {
 
 /// What counts in a change.
 struct ShapeRules {
-  double slack = 0.0;  ///< so far from the design ground is not too deep or out of shape [m]
-  double end = 0.0;    ///< from here on the work ends, along the line [m]
+  double slack = 0.0;      ///< so far from the design ground is not too deep or out of shape [m]
+  double tolerance = 0.0;  ///< of the design [m]
+  double end = 0.0;        ///< from here on the work ends, along the line [m]
 };
 
 /// What a machine sees along a line: heights are those of its path.

@@ -18,13 +18,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Numbers of our own choice.
-constexpr int headings = 12;
-constexpr double place_step = 0.25;        // of places to stand [m]
+constexpr int headings = 8;
+constexpr double place_step = 0.5;         // of places to stand [m]
 constexpr double same_place = 1.0;         // [m]
-constexpr double farthest = 5.0;           // from what is hidden, along and across [m]
+constexpr double farthest = 5.0;           // from the design along, from what is hidden across [m]
 constexpr std::size_t most_cells = 200;    // that are looked for from each place
 constexpr double least_revealed = 0.0005;  // of the design, to be worth a scan
-constexpr double way_price = 0.0003;       // of the design, for a metre of the way [1/m]
+constexpr double way_price = 0.0001;       // of the design, for a metre of the way [1/m]
 constexpr double slack = 0.01;  // by which a ray may be within the ground that it passes [m]
 constexpr double outermost =
     0.02;  // share of a cloud's points beside the sector that is counted on
@@ -75,12 +75,14 @@ class Lookout {
   }
 
  private:
-  /// All about what is hidden.
+  /// All along the design: what lies at the foot of one end is seen from beyond the other.
   std::vector<JobStation> candidates() const {
     Eigen::AlignedBox2d box;
     for (const Vector3d& at : hidden_) box.extend(task_.frame.of(at.head<2>()));
     std::vector<JobStation> places;
     if (box.isEmpty()) return places;
+    box.min().x() = task_.frame.near;
+    box.max().x() = task_.frame.far;
     const auto steps = [&](int axis) {
       return static_cast<int>((box.sizes()[axis] + 2.0 * farthest) / place_step);
     };

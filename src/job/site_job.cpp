@@ -7,8 +7,11 @@
 #include <utility>
 
 #include <excavplan/planning/dig_cycle.hpp>
+#include <excavplan/soil/soil.hpp>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_ground.hpp"
@@ -23,19 +26,24 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr std::size_t most_unseen = 5;  // digs between two scans
+constexpr std::size_t most_unseen = 5;         // digs between two scans
+constexpr std::size_t most_unseen_passes = 2;  // likewise of passes
 constexpr double allowance = 0.15;      // over the design, in tolerances: what is too deep stays so
-constexpr int most_passes = 12;         // along the floor from one station
-constexpr int most_fruitless = 4;       // passes in succession that took nothing off
-constexpr int most_fruitless_digs = 5;  // likewise of digs for volume
-constexpr double off_wall = 0.05;       // of passes beside it [m]
-constexpr double most_carried = 0.4;    // of a heaped bucket, through a pass
-constexpr double least_mass = 15.0;     // in a bucket that was worth it [kg]
-constexpr double least_taken = 0.3;     // of what a pass is to take off, else it is fruitless
-constexpr double high_share = 0.7;      // of the tolerance: higher cells call for a pass
-constexpr double most_high = 0.02;      // share of cells that may stay so
-constexpr double heap_share = 1.6;      // likewise of cells of which hardly any may stay so
-constexpr double most_heaps = 0.006;    // share of these
+constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
+constexpr double most_allowance = 0.4;  // of passes to that end, likewise
+constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
+constexpr std::size_t least_of_floor = 100;  // cells that tell it
+constexpr int most_passes = 12;              // along the floor from one station
+constexpr int most_fruitless = 4;            // passes in succession that took nothing off
+constexpr int most_fruitless_digs = 5;       // likewise of digs for volume
+constexpr double off_wall = 0.05;            // of passes beside it [m]
+constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
+constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
+constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
+constexpr double high_share = 1.0;           // of the tolerance: higher cells call for a pass
+constexpr double most_high = 0.02;           // share of cells that may stay so
+constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
+constexpr double most_heaps = 0.006;         // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
 constexpr double least_seen = 0.99;         // of a finished design
 constexpr double well_seen = 0.999;         // of it, so that no more is looked for
@@ -45,21 +53,15 @@ constexpr double shallowest_cut = 0.06;     // [m]
 
 /// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
 /// the walls: one that stands too far inside would stop them.
-std::vector<double> lanes_of_passes(const std::vector<double>& lanes) {
+std::vector<double> lanes_of(const JobStation& station, bool finishing) {
+  if (!finishing) return station.lanes;
   std::vector<double> all;
-  for (const double lane : lanes) {
+  for (const double lane : station.lanes) {
     if (!all.empty()) all.push_back(0.5 * (all.back() + lane));
     all.push_back(lane);
   }
   if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
   return all;
-}
-
-/// Of another end of its cycle.
-void set_cycle(const Machine& machine, StepDig& dig, const CycleOptions& options) {
-  const auto cycle = cycle_of(machine, dig.path, dig.dig, options);
-  dig.dig.cycle_energy = cycle ? cycle->total.energy : dig.dig.cycle_energy;
-  dig.dig.cycle_time = cycle ? cycle->total.time : dig.dig.cycle_time;
 }
 
 /// A scan that tells the ground alone.
@@ -72,6 +74,21 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
   return event;
 }
 
+/// Mean of a cell and its neighbours that count, since a single one is as much noise [m].
+double mean_above_design(const JobMap& map, const Terrain& ground, Cell cell) {
+  double sum = 0.0;
+  int known = 0;
+  const auto add = [&](Cell at) {
+    const double above = map.counts(at.row, at.col) ? above_design(map, ground, at) : std::nan("");
+    if (std::isnan(above)) return;
+    sum += above;
+    ++known;
+  };
+  add(cell);
+  for_each_neighbour(map.counts, cell, add);
+  return known > 0 ? sum / known : std::nan("");
+}
+
 /// Sets what is measured of the ground.
 JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& now,
                      double tolerance) {
@@ -82,16 +99,19 @@ JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& n
   double squares = 0.0;
   int cells = 0;
   int seen = 0;
+  int beyond = 0;
   for_each_cell(map.target.z, [&](Cell at) {
     if (std::isnan(map.target.z(at.row, at.col))) return;
     ++cells;
     const double error = above_design(map, ground, at);
     if (std::isnan(error)) return;
-    if (!std::isnan(now.seen()(at.row, at.col))) ++seen;
     progress.left_volume += area * std::max(0.0, error);
+    if (std::isnan(now.seen()(at.row, at.col))) return;
+    ++seen;
     if (!map.counts(at.row, at.col)) return;
     errors.push_back(std::abs(error));
     squares += error * error;
+    if (std::abs(mean_above_design(map, ground, at)) > 2.0 * tolerance) ++beyond;
   });
   progress.seen = cells > 0 ? static_cast<double>(seen) / cells : 0.0;
   if (errors.empty()) return progress;
@@ -99,10 +119,7 @@ JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& n
   const auto count = static_cast<double>(errors.size());
   progress.rms = std::sqrt(squares / count);
   progress.p95 = errors[static_cast<std::size_t>(0.95 * (count - 1.0))];
-  progress.beyond_twice =
-      static_cast<double>(errors.end() -
-                          std::upper_bound(errors.begin(), errors.end(), 2.0 * tolerance)) /
-      count;
+  progress.beyond_twice = beyond / count;
   progress.is_finished = progress.p95 <= tolerance && progress.beyond_twice <= most_beyond_twice &&
                          progress.seen >= least_seen;
   return progress;
@@ -116,11 +133,39 @@ struct SiteJob::State {
 
   void look_at_design() {
     map = map_of(settings, first.bank);
+    design = map.target.z;
     frame = frame_of(settings, map);
     stations = stations_of(frame, settings);
     const JobStation last = stations.back();
+    for (JobStation& beyond : stations_beyond(frame, settings)) {
+      if (!frame.is_battered && can_dig_from(beyond)) stations.push_back(std::move(beyond));
+    }
     const JobStation lookout;
-    stations.insert(stations.end(), {lookout, lookout, lookout, last, lookout, lookout, lookout});
+    stations.insert(stations.end(),
+                    {lookout, lookout, lookout, lookout, last, lookout, lookout, lookout, lookout});
+  }
+
+  /// In the frame of the ground as it is known.
+  void hang_design() {
+    if (settings.surface.hangs_on_scan) return;
+    const Eigen::Vector3d over = record.learning.datum.plane();
+    for_each_cell(design, [&](Cell at) {
+      map.target.z(at.row, at.col) = design(at.row, at.col) + over.x() +
+                                     over.y() * map.target.x(at.col) +
+                                     over.z() * map.target.y(at.row);
+    });
+  }
+
+  JobFrame frame_at(const JobStation& station) const {
+    return station.is_beyond ? reversed(frame) : frame;
+  }
+
+  /// Stand there before the job, and dump.
+  bool can_dig_from(const JobStation& station) const {
+    const JobFrame line = frame_at(station);
+    const Machine& machine = settings.site.machine;
+    return can_stand(line, station, machine, map) &&
+           dump_place(settings, map, first, base_at(line, station, first, machine));
   }
 
   JobProgress progress() const {
@@ -129,12 +174,23 @@ struct SiteJob::State {
 
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
+  StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
   JobStep move_step(const JobStation& station);
   JobStep leave();
-  std::optional<JobStation> next_place(double seen) const;
+  std::optional<JobStation> next_place(const JobProgress& now) const;
+  bool has_shape(const JobProgress& now) const {
+    return now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
+  }
   BasePose base_of(const JobStation& station) const;
   bool wants_passes(const BasePose& base) const;
-  bool may_keep(const PlannedDig& dig) const;
+  template <typename Visit>
+  void for_each_in_reach(const BasePose& base, Visit visit) const;
+  void learn_floor();
+  double allowance_of_passes() const;
+  void foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const;
+  bool check_motion(JobStep& step);
+  bool may_keep(double more) const;
+  std::optional<JobStep> dump_step();
   JobStep step_of(JobAction what, const std::string& reason = {});
   void end_step(const StepReport& report);
   void end_dig(const JobStep& step, const StepReport& report);
@@ -150,6 +206,7 @@ struct SiteJob::State {
   JobGround ground;
   Terrain first;  ///< before the job
   JobMap map;
+  Eigen::ArrayXXd design;  ///< JobMap::target as told
   JobFrame frame;
   std::vector<JobStation> stations;
   JobRecord record;
@@ -165,58 +222,112 @@ JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
   return step;
 }
 
-std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
-  const Machine& machine = settings.site.machine;
-  const Terrain& now = ground.expected();
-  const auto dump = dump_place(settings, map, now, record.base);
-  if (!dump) return std::nullopt;
-  BasePose straight = record.base;
-  straight.heading = frame.heading;
-  straight.z += record.learning.height_bias.mean;
-  const Eigen::Vector2d at = frame.of({straight.x, straight.y});
-  const WorkRange range = work_range(frame, machine, at.x());
-  StepTask task{settings, map, now, straight, *dump, record.barren};
+/// @param straight  the machine as it looks along the design
+StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
+                                 const BasePose& straight) const {
+  const JobFrame line = frame_at(stations[record.station]);
+  const Eigen::Vector2d at = line.of({straight.x, straight.y});
+  const WorkRange range = work_range(line, settings.site.machine, at.x());
+  StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
+  for (const double lane : lanes_of(stations[record.station], finishing))
+    task.lanes.push_back(lane - at.y());
   task.near = range.near;
   task.far = range.far;
   task.ends_at_wall = range.ends_at_wall;
   task.may_risk = record.progress.stalls == 0;
-  const std::vector<double>& lanes = stations[record.station].lanes;
-  for (const double lane : finishing ? lanes_of_passes(lanes) : lanes)
-    task.lanes.push_back(lane - at.y());
   task.finishing = finishing;
-  task.allowance = allowance * settings.design.tolerance;
+  task.keeps_load = finishing && may_keep(0.0);
+  task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
-  task.carried = record.carried;
+  task.carried = finishing && record.carried ? record.carried->volume : 0.0;
   task.slack = 0.5 * settings.design.tolerance;
+  return task;
+}
+
+std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
+  const auto dump = dump_place(settings, map, ground.expected(), record.base);
+  if (!dump) return std::nullopt;
+  BasePose straight = record.base;
+  straight.heading = frame_at(stations[record.station]).heading;
+  straight.z += record.learning.height_bias.mean;
+  const StepTask task = task_of(finishing, *dump, straight);
   auto dig = best_dig(task);
   if (!dig) return std::nullopt;
-  const bool keeps_load = finishing && may_keep(dig->dig);
-  if (finishing && !keeps_load) set_cycle(machine, *dig, cycle_after(*dump, false));
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
-  step.swung = frame.heading - record.base.heading;
+  step.swung = wrapped(straight.heading - record.base.heading);
   step.lane = dig->lane;
   step.path = std::move(dig->path);
   step.dump = dump->place;
-  step.keeps_load = keeps_load;
-  if (dump->in_truck && !keeps_load) step.truck = record.trucks;
-  step.predicted = record.learning.foretell(dig->dig);
-  const StepMotion motion = checked_motion(settings, now, step);
-  step.warnings = motion.warnings;
-  step.trustworthy = motion.is_trustworthy;
-  step.reason = motion.blocked;
+  if (dump->in_truck) step.truck = record.trucks;
+  step.carried = record.carried;
+  step.dumps_first = record.carried && !finishing;
+  step.keeps_load = task.keeps_load && can_hold_load(settings.site.soil, step.path) &&
+                    may_keep(dig->dig.payload_volume);
+  foretell(step, *dump, *dig);
+  if (!check_motion(step) && step.keeps_load) {
+    step.keeps_load = false;
+    foretell(step, *dump, *dig);
+    (void)check_motion(step);
+  }
   record.planned = dig->dig;
   record.strength_share = dig->strength_share;
   return step;
 }
 
+/// With all that the step does before and after the dig.
+void SiteJob::State::foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const {
+  const Machine& machine = settings.site.machine;
+  const double carried = step.carried ? loose_mass(settings.site.soil, step.carried->volume) : 0.0;
+  const auto after = cycle_of(machine, step.path, dig.dig,
+                              cycle_after(dump, step.keeps_load, step.dumps_first ? 0.0 : carried));
+  if (after) {
+    dig.dig.cycle_energy = after->total.energy;
+    dig.dig.cycle_time = after->total.time;
+  }
+  step.predicted = record.learning.foretell(dig.dig);
+  if (!step.dumps_first) return;
+  const auto before =
+      dump_of(machine, step.carried->joints.head<3>(), cycle_after(dump, false, carried));
+  if (!before) return;
+  for (double* energy : {&step.predicted.energy, &step.predicted.energy_interval[0],
+                         &step.predicted.energy_interval[1]})
+    *energy += before->energy;
+  step.predicted.time += before->time;
+}
+
+/// @return whether it can be trusted
+bool SiteJob::State::check_motion(JobStep& step) {
+  const StepMotion motion = checked_motion(settings, ground.expected(), step);
+  step.warnings = motion.warnings;
+  step.trustworthy = motion.is_trustworthy;
+  step.reason = motion.blocked;
+  record.rests_at = motion.rests_at;
+  return step.trustworthy;
+}
+
 /// Whether another pass can follow before the bucket is dumped.
-bool SiteJob::State::may_keep(const PlannedDig& dig) const {
-  const double held = record.carried + dig.payload_volume;
+bool SiteJob::State::may_keep(double more) const {
+  const double held = (record.carried ? record.carried->volume : 0.0) + more;
   return !settings.design.truck && held <= most_carried * heaped_capacity(settings.site.machine) &&
          record.passes_here + 1 < most_passes;
+}
+
+/// What passes left in the bucket is dumped, and its last ones are seen.
+std::optional<JobStep> SiteJob::State::dump_step() {
+  if (!record.carried) return std::nullopt;
+  const auto dump = dump_place(settings, map, ground.expected(), record.base);
+  if (!dump) return std::nullopt;
+  JobStep step =
+      step_of(JobAction::scan, "to dump what passes left in the bucket, and to see them");
+  step.swung = wrapped(frame_at(stations[record.station]).heading - record.base.heading);
+  step.carried = record.carried;
+  step.dumps_first = true;
+  step.dump = dump->place;
+  (void)check_motion(step);
+  return step;
 }
 
 JobStep SiteJob::State::move_step(const JobStation& station) {
@@ -226,80 +337,105 @@ JobStep SiteJob::State::move_step(const JobStation& station) {
 }
 
 BasePose SiteJob::State::base_of(const JobStation& station) const {
-  return base_at(frame, station, ground.expected(), settings.site.machine);
+  return base_at(frame_at(station), station, ground.expected(), settings.site.machine);
 }
 
-/// Whether too much of what is within reach lies above the design: on the mean of a cell and its
-/// neighbours, since a single one is as much noise.
-bool SiteJob::State::wants_passes(const BasePose& base) const {
-  const Eigen::Vector2d at = frame.of({base.x, base.y});
-  const WorkRange range = work_range(frame, settings.site.machine, at.x());
-  const std::vector<double>& lanes = stations[record.station].lanes;
+/// The cells that count and are dug from there.
+template <typename Visit>
+void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const {
+  const JobStation& station = stations[record.station];
+  const JobFrame line = frame_at(station);
+  const Eigen::Vector2d at = line.of({base.x, base.y});
+  const WorkRange range = work_range(line, settings.site.machine, at.x());
   const double half = 0.5 * settings.site.machine.bucket.width_outside;
-  const Terrain& now = ground.expected();
-  const auto above = [&](Cell cell) {
-    return map.counts(cell.row, cell.col) ? above_design(map, now, cell) : std::nan("");
-  };
+  for_each_cell(map.counts, [&](Cell cell) {
+    if (!map.counts(cell.row, cell.col)) return;
+    const Eigen::Vector2d place = line.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
+    if (place.x() < range.near || place.x() > range.far) return;
+    if (place.y() < station.lanes.front() - at.y() - half) return;
+    if (place.y() <= station.lanes.back() - at.y() + half) visit(cell);
+  });
+}
+
+/// Whether too much of what is within reach lies above the design.
+bool SiteJob::State::wants_passes(const BasePose& base) const {
+  const double tolerance = settings.design.tolerance;
   int count = 0;
   int high = 0;
   int heaps = 0;
-  for_each_cell(map.counts, [&](Cell cell) {
-    if (std::isnan(above(cell))) return;
-    const Eigen::Vector2d place = frame.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
-    if (place.x() < range.near || place.x() > range.far) return;
-    if (place.y() < lanes.front() - at.y() - half || place.y() > lanes.back() - at.y() + half)
-      return;
-    double sum = above(cell);
-    int known = 1;
-    for_each_neighbour(map.counts, cell, [&](Cell next) {
-      const double beside = above(next);
-      if (std::isnan(beside)) return;
-      sum += beside;
-      ++known;
-    });
+  for_each_in_reach(base, [&](Cell cell) {
+    if (std::isnan(above_design(map, ground.expected(), cell))) return;
+    const double above = mean_above_design(map, ground.expected(), cell);
     ++count;
-    if (sum > high_share * settings.design.tolerance * known) ++high;
-    if (sum > heap_share * settings.design.tolerance * known) ++heaps;
+    if (above > high_share * tolerance) ++high;
+    if (above > heap_share * tolerance) ++heaps;
   });
   return high > most_high * count || heaps > most_heaps * count;
 }
 
+/// How the ground lies that passes from here left.
+void SiteJob::State::learn_floor() {
+  if (record.passes_here == 0) return;
+  std::vector<double> above;
+  for_each_in_reach(record.base, [&](Cell cell) {
+    const double error = above_design(map, ground.expected(), cell);
+    if (!std::isnan(error) && !std::isnan(ground.seen()(cell.row, cell.col)))
+      above.push_back(error);
+  });
+  if (above.size() < least_of_floor) return;
+  const double left = median(above) - allowance_of_passes();
+  if (std::abs(left) > settings.design.tolerance) return;  // it is not in shape
+  record.learning.floor.learn(left, floor_reading_sd * floor_reading_sd);
+}
+
+/// So that the middle of what they leave lies where it should.
+double SiteJob::State::allowance_of_passes() const {
+  const double tolerance = settings.design.tolerance;
+  return std::clamp(middle * tolerance - record.learning.floor.mean, -most_allowance * tolerance,
+                    most_allowance * tolerance);
+}
+
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) return move_step(stations[record.station]);
-  const bool is_fresh = ground.unseen().empty();
   if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (stations[record.station].is_lookout()) return leave();
-  if (ground.unseen().size() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
+  if (ground.unseen_digs() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   if (record.fruitless_digs < most_fruitless_digs) {
     if (auto step = dig_step(false)) return *std::move(step);
   }
-  if (!is_fresh) return step_of(JobAction::scan, "to see what is left");
+  const std::size_t passes = ground.unseen_digs(JobAction::finish);
+  if (ground.unseen_digs() > passes || passes >= most_unseen_passes)
+    return step_of(JobAction::scan, "to see what is left");
   if (record.passes_here < most_passes && record.fruitless < most_fruitless &&
       wants_passes(record.base)) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
+  if (auto step = dump_step()) return *std::move(step);
+  if (passes > 0) return step_of(JobAction::scan, "to see what is left");
   return leave();
 }
 
 /// Where the present station is; nothing if there is nothing to do.
-std::optional<JobStation> SiteJob::State::next_place(double seen) const {
+std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) const {
   const JobStation& station = stations[record.station];
+  if (station.is_beyond && has_shape(now)) return std::nullopt;
   if (station.is_lookout()) {
-    if (seen >= well_seen) return std::nullopt;
+    if (now.seen >= well_seen) return std::nullopt;
     return best_lookout({frame, settings, map, ground.expected(), ground.seen(),
                          record.looks.empty() ? usual_looks() : record.looks, record.base});
   }
   const bool is_again = record.station > 0 && stations[record.station - 1].is_lookout();
-  if (is_again && !wants_passes(base_of(station))) return std::nullopt;
+  if ((is_again || station.is_beyond) && !wants_passes(base_of(station))) return std::nullopt;
   return station;
 }
 
 /// To the next place from which there is something to do, or the end.
 JobStep SiteJob::State::leave() {
   const JobProgress now = progress();
+  learn_floor();
   while (!(now.is_finished && now.seen >= well_seen) && record.station + 1 < stations.size()) {
     ++record.station;
-    const auto place = next_place(now.seen);
+    const auto place = next_place(now);
     if (!place) continue;
     record.passes_here = 0;
     record.fruitless = 0;
@@ -309,19 +445,26 @@ JobStep SiteJob::State::leave() {
     return move_step(*place);
   }
   if (now.is_finished) return step_of(JobAction::stop, "finished");
-  const bool has_shape =
-      now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
-  return step_of(JobAction::stop,
-                 has_shape ? "the rest cannot be seen" : "what is left cannot be dug");
+  const std::string found = ": 95 % lie within " + readable(1e3 * now.p95, 2) + " mm, " +
+                            readable(100.0 * now.beyond_twice, 2) +
+                            " % beyond twice the tolerance, " + readable(100.0 * now.seen, 3) +
+                            " % are seen";
+  return step_of(
+      JobAction::stop,
+      (has_shape(now) ? "the rest cannot be seen" : "what is left cannot be dug") + found);
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
-  const auto off = ground.take_in(event_of(*report.scan, report.time, record.base));
+  const ScanNews news = ground.take_in(event_of(*report.scan, report.time, record.base));
   // Of the edge in one dig, and of what a scan's registration leaves (ours).
   constexpr double reading_sd = 0.012;
-  if (off) {
+  if (news.cut_off) {
     LearntNumber& bias = record.learning.height_bias;
-    bias.learn(bias.mean + *off, reading_sd * reading_sd);
+    bias.learn(bias.mean + *news.cut_off, reading_sd * reading_sd);
+  }
+  if (news.alignment) {
+    record.learning.datum.learn(*news.alignment);
+    hang_design();
   }
   record.wants_scan = false;
   record.site_updates = ground.site().updates();
@@ -350,7 +493,9 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   const double volume = report.payload_mass && record.planned->payload_mass > 0.0
                             ? lifted * record.planned->payload_volume / record.planned->payload_mass
                             : record.planned->payload_volume;
-  record.carried = step.keeps_load ? record.carried + std::max(0.0, volume) : 0.0;
+  const double held = record.carried ? record.carried->volume : 0.0;
+  record.carried.reset();
+  if (step.keeps_load) record.carried = {held + std::max(0.0, volume), record.rests_at};
   if (step.truck) {
     record.truck_load += lifted;
     if (record.truck_load >= settings.design.truck->target_mass) {
@@ -366,7 +511,12 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
 
 void SiteJob::State::end_step(const StepReport& report) {
   const JobStep step = *record.present;
-  if (step.what == JobAction::dig || step.what == JobAction::finish) end_dig(step, report);
+  if (step.dumps_first) record.carried.reset();
+  if (step.digs()) {
+    end_dig(step, report);
+  } else {
+    ground.expect(step, record.learning.height_bias.mean);
+  }
   if (step.what == JobAction::move) {
     record.base = report.base.value_or(step.base);
     record.has_arrived = true;
@@ -447,6 +597,7 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
   state->first = first.terrain;
   state->look_at_design();
   state->log_from(first);
+  state->hang_design();
   state->log->resume(state->record);
   state->restore();
   return SiteJob(std::move(state));
@@ -488,6 +639,7 @@ void SiteJob::look(const Scan& scan, double time) {
 
 void SiteJob::undo() {
   state_->record = earlier_record(state_->folder);
+  state_->hang_design();
   state_->restore();
 }
 

@@ -29,7 +29,12 @@ StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, co
     checked.blocked = stopped->message;
     return checked;
   }
-  const std::vector<Warning>& more = std::get<Trajectory>(motion).warnings;
+  const Trajectory& timed = std::get<Trajectory>(motion);
+  if (!timed.points.empty()) {
+    const TrajectoryPoint& last = timed.points.back();
+    checked.rests_at << last.joints, last.swing.angle;
+  }
+  const std::vector<Warning>& more = timed.warnings;
   checked.warnings.insert(checked.warnings.end(), more.begin(), more.end());
   checked.is_trustworthy = std::none_of(checked.warnings.begin(), checked.warnings.end(),
                                         [](const Warning& each) { return each.ends_trust; });

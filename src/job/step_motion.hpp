@@ -20,9 +20,10 @@ struct StepMotion {
   std::vector<Warning> warnings;  ///< of the motion, and of the ground that the machine stands on
   std::string blocked;            ///< what is in the way; empty: nothing
   bool is_trustworthy = false;    ///< not blocked, and no warning that ends trust
+  FrontJoints rests_at = FrontJoints::Zero();  ///< at its end [rad]; without a motion zero
 };
 
-/// motion_of() a dig and standing_ground().
+/// motion_of() a step and standing_ground().
 StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, const JobStep& step);
 
 }  // namespace excavplan

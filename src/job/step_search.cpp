@@ -42,13 +42,14 @@ constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's
 constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
 constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
 constexpr double standing = 0.05;       // of a bank in a lane over the mean ground of the lane [m]
-constexpr double least_shaped = 0.003;  // of ground that a pass brings into shape or clears [m^3]
-constexpr double wall_from = 0.5;       // before the end, soil that later digs would leave [m]
-constexpr double wall_to = 0.12;        // likewise [m]
-constexpr double high_wall = 0.03;      // of that soil, to be cut before all else [m]
-constexpr double wall_worth = 1.0;      // of that soil, beyond that of other soil
-constexpr double shortest_drag = 0.2;   // [m]
-constexpr double steepest_carrying = 0.45;  // of a bucket's floor on which soil stays [rad]
+constexpr double least_finished = 0.025;  // that a pass brings within the tolerance [m^2]
+constexpr double least_cleared = 0.02;    // or clears, for later ones [m^3]
+constexpr double wall_from = 0.5;         // before the end, soil that later digs would leave [m]
+constexpr double wall_to = 0.12;          // likewise [m]
+constexpr double high_wall = 0.03;        // of that soil, to be cut before all else [m]
+constexpr double wall_worth = 1.0;        // of that soil, beyond that of other soil
+constexpr double shortest_drag = 0.2;     // [m]
+constexpr double holding = 0.9;  // of the angle of repose: a bucket's floor on which soil stays
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
 struct Attitude {
@@ -330,11 +331,12 @@ class StepSearch {
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
     if (is_barren(task_.lanes[lane], start)) return;
-    if (task_.carried > 0.0 && parameters.penetration_angle > steepest_carrying) return;
     const Lane& at = lanes_[lane];
     const GroundProfile& ground = task_.finishing && !at.has_bank_at(start) ? at.mean : at.ground;
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
-    if (auto* made = std::get_if<DigPath>(&path)) candidates_.push_back({lane, std::move(*made)});
+    auto* made = std::get_if<DigPath>(&path);
+    if (made == nullptr || (task_.carried > 0.0 && !can_hold(*made))) return;
+    candidates_.push_back({lane, std::move(*made)});
   }
 
   bool is_barren(double lane, double start) const {
@@ -343,7 +345,12 @@ class StepSearch {
     });
   }
 
-  CycleOptions cycle() const { return cycle_after(task_.dump, task_.finishing); }
+  bool can_hold(const DigPath& path) const { return can_hold_load(task_.settings.site.soil, path); }
+
+  CycleOptions cycle_of(const DigPath& path) const {
+    const double carried = loose_mass(task_.settings.site.soil, task_.carried);
+    return cycle_after(task_.dump, task_.keeps_load && can_hold(path), carried);
+  }
 
   double cost(const PlannedDig& dig) const {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
@@ -351,7 +358,8 @@ class StepSearch {
 
   void weigh(Candidate& candidate) const {
     const Terrain& ground = lanes_[candidate.lane].view.ground().terrain();
-    const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle());
+    const auto dig =
+        dig_of_path(machine_, simulator_, ground, candidate.path, cycle_of(candidate.path));
     if (const auto* planned = std::get_if<PlannedDig>(&dig))
       candidate.worth = planned->payload_mass / cost(*planned);
   }
@@ -359,17 +367,20 @@ class StepSearch {
   std::optional<StepDig> confirm(const Candidate& candidate, Aim aim) const {
     const LaneView& view = lanes_[candidate.lane].view;
     const Terrain& ground = view.ground().terrain();
-    auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle());
+    auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle_of(candidate.path));
     auto* found = std::get_if<SimulatedDig>(&dug);
     if (found == nullptr) return std::nullopt;
     StepDig step;
     step.lane = task_.lanes[candidate.lane];
     step.path = candidate.path;
     step.dig = found->dig;
-    step.change = view.change(found->result.patch, {task_.slack, task_.far - wall_from});
+    if (task_.carried > 0.0 && step.dig.payload_volume > capacity_) return std::nullopt;
+    step.change = view.change(
+        found->result.patch, {task_.slack, task_.settings.design.tolerance, task_.far - wall_from});
     const double gain = gain_of(step, aim);
     if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;
-    const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle());
+    const auto in_hard =
+        dig_of_path(machine_, hard_, ground, candidate.path, cycle_of(candidate.path));
     const auto* hard = std::get_if<PlannedDig>(&in_hard);
     step.may_stall = hard == nullptr;
     step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
@@ -393,7 +404,8 @@ class StepSearch {
   /// Less is not worth a cycle.
   bool is_enough(const StepDig& step, Aim aim) const {
     const ShapeChange& change = step.change;
-    if (aim == Aim::shape) return std::max(change.shaped, change.cleared) > least_shaped;
+    if (aim == Aim::shape)
+      return change.finished > least_finished || change.cleared > least_cleared;
     if (aim == Aim::volume) return change.gained > least_gain * capacity_;
     if (task_.finishing) return change.at_end > least_lifted;
     return change.gained + change.at_end > least_at_wall * capacity_;
@@ -416,11 +428,17 @@ SoilKind with_strength(SoilKind soil, double factor) {
   return soil;
 }
 
-CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load) {
+bool can_hold_load(const SoilKind& soil, const DigPath& path) {
+  const double floor = path.parameters.penetration_angle + path.heel_clearance;
+  return floor <= holding * soil.angle_of_repose;
+}
+
+CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load, double carried) {
   CycleOptions options;
   options.swing = dump.swing;
   options.dump_height = dump.height;
   options.keeps_load = keeps_load;
+  options.carried = carried;
   return options;
 }
 

@@ -30,7 +30,8 @@ struct StepTask {
   bool ends_at_wall = false;            ///< there, the design ends
   bool may_risk = false;                ///< a stall, to take off that end
   double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
-  bool finishing = false;         ///< along the floor, for its shape; the load is kept
+  bool finishing = false;         ///< along the floor, for its shape
+  bool keeps_load = false;        ///< a load that the bucket can keep is not dumped
   double carried = 0.0;           ///< loose, in the bucket [m^3]
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
   double density_percent = 50.0;  ///< of the bank, as believed
@@ -53,8 +54,12 @@ struct StepDig {
 /// @return nothing if no dig gains anything
 std::optional<StepDig> best_dig(const StepTask& task);
 
-/// What follows the dig: back to the next one with the load, or over the dump.
-CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load);
+/// Whether soil stays in the bucket where the dig begins.
+bool can_hold_load(const SoilKind& soil, const DigPath& path);
+
+/// What follows a dig: back to the next one with the load, or over the dump.
+/// @param carried  before it [kg]
+CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load, double carried = 0.0);
 
 /// The same soil, so many times as strong.
 SoilKind with_strength(SoilKind soil, double factor);

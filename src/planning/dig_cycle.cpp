@@ -84,6 +84,14 @@ void check(const DigPath& path, const PlannedDig& dig, const CycleOptions& optio
   require_in("cycle: swing [rad]", options.swing, -2.0 * pi, 2.0 * pi);
   require_in("cycle: dump_height [m]", options.dump_height, 0.0, most);
   require_in("cycle: rest_of_cycle [s]", options.rest_of_cycle, 0.0, most);
+  require_in("cycle: carried [kg]", options.carried, 0.0, most);
+}
+
+/// To lift what the bucket holds already along with the dig, at least.
+double work_on(double carried, const Machine& machine, const DigPath& path, const Poses& lift) {
+  const double rise = pin_height(machine, lift.front().joints) -
+                      pin_height(machine, path.poses.front().joints);
+  return carried * gravity * std::max(0.0, rise);
 }
 
 }  // namespace
@@ -93,8 +101,9 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
   require_machine(machine);
   if (!machine.swing || !machine.engine) return std::nullopt;
   check(path, dig, options);
-  const FrontLoad loaded(machine, dig.payload_mass), empty(machine);
+  const FrontLoad loaded(machine, options.carried + dig.payload_mass), empty(machine);
   Poses lift = lift_of(path);
+  const double carrying = work_on(options.carried, machine, path, lift);
   const JointAngles clear = lift.back().joints;
   const double clear_height = pin_height(machine, clear);
   const double height =
@@ -108,7 +117,7 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
   const double clear_at = is_clear != up.points.end() ? is_clear->time : up.duration();
 
   DigCycle cycle;
-  cycle.dig = {dig.energy, dig.duration};
+  cycle.dig = {dig.energy + carrying, dig.duration};
   cycle.lift = move(loaded, lift, up);
   if (options.keeps_load) {
     cycle.lower = move(loaded, full, path.poses.front().joints);
@@ -128,6 +137,15 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
     cycle.total.energy += part->energy;
   }
   return cycle;
+}
+
+std::optional<CycleShare> dump_of(const Machine& machine, const JointAngles& held,
+                                  const CycleOptions& options) {
+  DigPath still;
+  still.poses.resize(1);
+  still.poses.front().joints = held;
+  const auto cycle = cycle_of(machine, still, {}, options);
+  return cycle ? std::optional<CycleShare>(cycle->total) : std::nullopt;
 }
 
 void require_cycle(const Machine& machine, const CycleOptions& options) {

@@ -78,7 +78,6 @@ Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job) {
 }
 
 Json job_step_json(const JobStep& step) {
-  const bool digs = step.what == JobAction::dig || step.what == JobAction::finish;
   Json json = {{"step", step.id},
                {"what", name(step.what)},
                {"base",
@@ -91,12 +90,15 @@ Json job_step_json(const JobStep& step) {
                {"path", nullptr},
                {"dump", nullptr},
                {"predicted", nullptr}};
-  if (digs) {
+  if (step.moves_front()) {
+    json["dump"] = {{"x_m", step.dump.x()}, {"y_m", step.dump.y()}, {"z_m", step.dump.z()}};
+  }
+  if (step.digs()) {
     json["path"] = path_json(step);
     json["keeps_load"] = step.keeps_load;
-    json["dump"] = {{"x_m", step.dump.x()}, {"y_m", step.dump.y()}, {"z_m", step.dump.z()}};
     json["predicted"] = predicted_json(step.predicted);
   }
+  json["dumps_first"] = step.dumps_first;
   json["truck"] = step.truck ? Json(*step.truck) : Json();
   json["trustworthy"] = step.trustworthy;
   json["reason"] = step.reason;

@@ -172,6 +172,7 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
     SurveyedEvent seen = surveyed(event, settings, before.ground);
     update.estimate = std::move(seen.estimate);
     update.warnings = std::move(seen.warnings);
+    update.alignment = seen.alignment;
     update.taken = seen.fits;
     next.ground = std::move(seen.ground);
     add_first_heights(next.ground, settings, next.first);

@@ -84,18 +84,6 @@ bool fits_ground(const DensityEstimate& estimate) {
   });
 }
 
-/// Cells of a grid that a scan has points in.
-Mask returns_in(const Scan& scan, const HeightMap& grid) {
-  Mask returns = Mask::Constant(grid.z.rows(), grid.z.cols(), false);
-  visit_scan(scan, [&](const std::vector<Eigen::Vector3d>& points) {
-    for (const Eigen::Vector3d& point : points) {
-      if (const auto cell = cell_at(grid, point.x(), point.y()))
-        returns(cell->row, cell->col) = true;
-    }
-  });
-  return returns;
-}
-
 /// Bank that was never seen and below no obstacle.
 Mask is_open(const GroundState& ground) {
   Mask open = ground.terrain.bank.z.isNaN();
@@ -148,6 +136,17 @@ void add_new_ground(const Scan& scan, const Rectangle& extent, double time, Grou
 
 }  // namespace
 
+Mask returns_in(const Scan& scan, const HeightMap& grid) {
+  Mask returns = Mask::Constant(grid.z.rows(), grid.z.cols(), false);
+  visit_scan(scan, [&](const std::vector<Eigen::Vector3d>& points) {
+    for (const Eigen::Vector3d& point : points) {
+      if (const auto cell = cell_at(grid, point.x(), point.y()))
+        returns(cell->row, cell->col) = true;
+    }
+  });
+  return returns;
+}
+
 GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings) {
   const double fresh = settings.soil.void_ratio_loose;
   GroundState ground = unseen_ground(extent_of(scan, 0), *settings.cell_size, fresh);
@@ -175,6 +174,7 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
   if (is_apart) in_site.options.joint_work = std::nullopt;
   DensityEstimate estimate = estimate_in(in_site, settings, ground);
   result.fits = fits_ground(estimate);
+  if (estimate.registration) result.alignment = estimate.registration->found;
   if (result.fits) {
     result.ground = std::move(*estimate.ground_after);
     const auto& moved_by = estimate.registration;

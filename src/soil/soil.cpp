@@ -233,6 +233,10 @@ SoilState loose_state(const SoilKind& soil) {
   return checked_loose_state(soil, soil.void_ratio_loose);
 }
 
+double loose_mass(const SoilKind& soil, double volume) {
+  return volume * loose_state(soil).unit_weight / gravity;
+}
+
 double cone_index(const SoilKind& soil, const SoilState& state, double depth) {
   if (soil.cone_index_law == ConeIndexLaw::bulk_density) {
     return soil.cone_index_reference *

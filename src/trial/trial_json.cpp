@@ -29,6 +29,7 @@ Json dig_json(const TrialStep& at) {
   line["lane_m"] = at.step.lane;
   line["swung_rad"] = at.step.swung;
   line["keeps_load"] = at.step.keeps_load;
+  line["dumps_first"] = at.step.dumps_first;
   line["dump"] = {{"x", at.step.dump.x()}, {"y", at.step.dump.y()}, {"z", at.step.dump.z()}};
   return line;
 }
@@ -47,6 +48,7 @@ Json line_of(const TrialStep& at) {
     default:
       return {{"type", name(at.step.what)},
               {"time_s", at.done.time},
+              {"energy_j", at.done.energy},
               {"plan_s", at.planning_time},
               {"reason", at.step.reason}};
   }

@@ -90,13 +90,6 @@ CycleShare cycle_cost(const Machine& machine, const DigPath& path, const DigResu
   return cycle ? cycle->total : CycleShare{planned.energy, planned.duration};
 }
 
-/// With all that the bucket then holds.
-DigResult with_load(DigResult dig, double volume) {
-  if (dig.payload_volume > 0.0) dig.payload_mass *= volume / dig.payload_volume;
-  dig.payload_volume = volume;
-  return dig;
-}
-
 }  // namespace
 
 struct TrueSite::State {
@@ -156,6 +149,7 @@ struct TrueSite::State {
   }
 
   TrueStep dig(const JobStep& job);
+  CycleShare dump_first(const JobStep& job);
   CycleOptions cycle_after(const JobStep& job, double from, const Vector2d& dump) const;
   void fill(const DigResult& dig, const Vector2d& end);
   void dump(const JobStep& job, const Vector2d& at);
@@ -164,6 +158,15 @@ struct TrueSite::State {
     return volume * site.soil.specific_gravity * water_density / (1.0 + site.soil.void_ratio_loose);
   }
   TrueStep move(const JobStep& job);
+  TrueStep dump_and_scan(const JobStep& job) {
+    const CycleShare first = dump_first(job);
+    TrueStep done;
+    done.time = first.time;
+    done.energy = first.energy;
+    if (job.dumps_first) done.report.joint_work = first.energy;
+    take_scan(done);
+    return done;
+  }
   Scan scan();
   void take_scan(TrueStep& done) {
     done.report.scan = scan();
@@ -187,8 +190,28 @@ struct TrueSite::State {
   ArrayXXd seen_height;  ///< of the true surface when a cell was last seen; NaN: never [m]
 };
 
+/// What the bucket holds before the step.
+CycleShare TrueSite::State::dump_first(const JobStep& job) {
+  if (!job.dumps_first) return {};
+  require(job.carried.has_value(), "it dumps first, and does not say from where");
+  const Vector2d at = PoseError{known, real}.moved(job.dump.head<2>());
+  require_reach(job, at);
+  const FrontJoints& from = job.carried->joints;
+  CycleOptions cycle = cycle_after(job, real.heading + from[3], at);
+  cycle.carried = loose_mass(site.soil, held);
+  cycle.keeps_load = false;
+  const auto cost = dump_of(machine, from.head<3>(), cycle);
+  const Solids after(ground, site.soil);
+  const ArrayXXd loose = ground.loose;
+  dump(job, at);
+  solids.lying += after.lying_since(loose);
+  solids.held = solids_of(held);
+  return cost.value_or(CycleShare{});
+}
+
 TrueStep TrueSite::State::dig(const JobStep& job) {
   require(job.path.poses.size() >= 2, "its path has fewer than two poses");
+  const CycleShare first = dump_first(job);
   Random tracking = random(tracking_stream);
   const double aside = site.errors.side_sd * tracking.normal();
   std::vector<double> shift = height_errors(job.path, site.errors, tracking);
@@ -209,8 +232,8 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
       dig_along(*simulator, machine, ground, {line, soil_voids(site.soil, density), path});
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
+  const double carried = held;
   fill(dug, line.place(path.poses.back().bucket.x, 0.0));
-  const double load = held;
   if (!job.keeps_load) {
     require_reach(job, dump_at);
     dump(job, dump_at);
@@ -222,15 +245,16 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   if (site.density.gradient != 0.0) set_void_ratios(site.density, site.soil, ground);
 
   const double from = line.heading + std::atan2(job.lane, path.poses.back().bucket.x);
-  const CycleShare cost =
-      cycle_cost(machine, path, with_load(dug, load), cycle_after(job, from, dump_at));
+  CycleOptions after_dig = cycle_after(job, from, dump_at);
+  after_dig.carried = loose_mass(site.soil, carried);
+  const CycleShare cost = cycle_cost(machine, path, dug, after_dig);
   TrueStep done;
-  done.time = cost.time;
-  done.energy = cost.energy;
+  done.time = first.time + cost.time;
+  done.energy = first.energy + cost.energy;
   done.payload_mass = dug.payload_mass;
   done.stall = dug.stall;
   done.report.stalled = dug.stall.has_value();
-  done.report.joint_work = cost.energy;
+  done.report.joint_work = done.energy;
   done.report.payload_mass = dug.payload_mass * (1.0 + site.errors.payload_scale) *
                              (1.0 + site.errors.payload_noise * random(scale_stream).normal());
   if (options.scans_each_dig) take_scan(done);
@@ -323,7 +347,7 @@ TrueStep TrueSite::execute(const JobStep& step) {
         done = state_->move(step);
         break;
       case JobAction::scan:
-        state_->take_scan(done);
+        done = state_->dump_and_scan(step);
         break;
       case JobAction::wait:
         done.time = state_->options.wait_time;

@@ -322,7 +322,7 @@ TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   JobRecord record;
   record.barren = {{0.12, 5.4}, {-0.12, 4.6}};
   record.passes_here = 3;
-  record.carried = 0.07;
+  record.carried = CarriedLoad{0.07, {0.1, 0.2, -0.3, 0.4}};
   record.looks = {{{0.6, 0.7, 3.0}, 0.1, 0.5, 12.0, 0.8}, usual_looks().front()};
   record.present = JobStep{};
   record.present->keeps_load = true;
@@ -332,7 +332,9 @@ TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   EXPECT_EQ(read.barren[1].lane, -0.12);
   EXPECT_EQ(read.barren[1].along, 4.6);
   EXPECT_EQ(read.passes_here, 3);
-  EXPECT_EQ(read.carried, 0.07);
+  ASSERT_TRUE(read.carried.has_value());
+  EXPECT_EQ(read.carried->volume, 0.07);
+  EXPECT_EQ(read.carried->joints, record.carried->joints);
   EXPECT_TRUE(read.present->keeps_load);
   ASSERT_EQ(read.looks.size(), 2U);
   EXPECT_EQ(read.looks[0].from, Eigen::Vector3d(0.6, 0.7, 3.0));

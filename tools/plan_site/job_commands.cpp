@@ -65,10 +65,10 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   return outcome;
 }
 
-/// Writes the motion of a dig into the folder of its job.
+/// Writes the motion of a step into the folder of its job.
 void add_motion(const std::string& folder, const SiteJob& job, JobStep& step, Outcome& outcome) {
   outcome.json["trajectory"] = nullptr;
-  if (step.path.poses.empty()) return;
+  if (!step.moves_front()) return;
   auto motion = motion_of(load_order(folder), job.ground(), step);
   if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
     step.warnings.emplace_back(

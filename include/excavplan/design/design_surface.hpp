@@ -28,6 +28,8 @@ struct DesignSurface {
   std::variant<Tin, HeightMap> shape;  ///< outside of it nothing is asked for
   /// Parts above the ground ask for nothing: faces that end where they reach the ground.
   bool cuts_only = false;
+  /// Its heights are told below the ground of a scan and share what that is off.
+  bool hangs_on_scan = false;
   double unit = 1.0;               ///< of its file [m]
   std::string unit_told_by;        ///< "Units: foot", "$INSUNITS 6: metre", "nothing: metres taken"
   std::vector<std::string> notes;  ///< what of its file was left out, or is doubtful

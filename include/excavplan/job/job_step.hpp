@@ -13,6 +13,7 @@
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/machine/base_pose.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/way.hpp>
 
 /// @file
 /// What a job asks of its machine, one step after the other, and what it is told of each.
@@ -40,6 +41,12 @@ struct ForetoldStep {
   std::array<double, 2> energy_interval{};   ///< 95 % [J]
 };
 
+/// Soil that passes left in the bucket, and where the front holds it.
+struct CarriedLoad {
+  double volume = 0.0;                       ///< loose [m^3]
+  FrontJoints joints = FrontJoints::Zero();  ///< at rest, the swing from the base's heading [rad]
+};
+
 /// One step of a job.
 struct JobStep {
   long long id = 0;                  ///< rises from step to step
@@ -52,11 +59,16 @@ struct JobStep {
   Eigen::Vector3d dump = Eigen::Vector3d::Zero();
   /// The bucket does not open: it goes back with its load, to which the next dig adds.
   bool keeps_load = false;
-  std::optional<int> truck;       ///< that is loaded, from 1
-  ForetoldStep predicted;         ///< of a dig
-  bool trustworthy = true;        ///< false after a warning that ends trust
-  std::vector<Warning> warnings;  ///< about this step
-  std::string reason;             ///< of a scan, a wait or a stop
+  std::optional<CarriedLoad> carried;  ///< as the step begins
+  bool dumps_first = false;            ///< what is carried, before all else of the step
+  std::optional<int> truck;            ///< that is loaded, from 1
+  ForetoldStep predicted;              ///< of a dig
+  bool trustworthy = true;             ///< false after a warning that ends trust
+  std::vector<Warning> warnings;       ///< about this step
+  std::string reason;                  ///< of a scan, a wait or a stop
+
+  bool digs() const { return what == JobAction::dig || what == JobAction::finish; }
+  bool moves_front() const { return digs() || dumps_first; }
 };
 
 /// What became of a step.

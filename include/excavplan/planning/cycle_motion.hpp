@@ -20,8 +20,9 @@ namespace excavplan {
 /// What a dig loads the joints with, and what it leaves.
 struct DigLoad {
   std::vector<JointAngles> torques;  ///< DigResult::torques [N m]
-  double payload_mass = 0.0;         ///< after it [kg], >= 0
+  double payload_mass = 0.0;         ///< in the bucket after it [kg], >= 0
   HeightMap ground_after = {};       ///< its surface where the dig may have changed it; empty: none
+  double carried = 0.0;              ///< in the bucket before it [kg], >= 0
 };
 
 /// What a way holds besides the dig.
@@ -33,6 +34,8 @@ struct CycleWayOptions {
   /// Of the bucket pin from the swing axis where it dumps [m], if the front reaches it there;
   /// nothing: as far as the boom alone brings it to the dump height.
   std::optional<double> dump_radius = {};
+  double lane = 0.0;  ///< of the path to the left of the swing axis; the swing follows it [m]
+  bool dumps_first = false;  ///< what is carried, on the way from the start to the dig
 };
 
 /// Ground, or its own undercarriage, in the way of the machine.
@@ -54,7 +57,8 @@ void check(const Machine& machine, const CycleWayOptions& options);
 ///
 /// Ground that is unknown or off the map counts as the plane of the tracks. Warnings, both of which
 /// end trust: unseen_way where boom, arm and bucket pass over such ground, payload_tips where a
-/// full bucket cannot keep its attitude, as its joint ends.
+/// bucket with soil cannot keep its attitude, as its joint ends. One that goes back with its load
+/// opens no further than to where the dig begins.
 ///
 /// @param ground  before the dig: all that the machine can pass over, swing_extent()
 /// @return the way, or what blocks it
@@ -66,5 +70,12 @@ void check(const Machine& machine, const CycleWayOptions& options);
 std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain& ground,
                                            const DigPath& path, const DigLoad& load,
                                            const CycleWayOptions& options);
+
+/// Likewise of a bucket that only dumps: from the start over the dump and back.
+/// @param payload  in it [kg]
+/// @param options  with a start
+/// @throws Error (bad_input) as way_of_cycle(); if there is no start
+std::variant<Way, BlockedWay> way_of_dump(const Machine& machine, const Terrain& ground,
+                                          double payload, const CycleWayOptions& options);
 
 }  // namespace excavplan

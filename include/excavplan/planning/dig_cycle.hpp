@@ -37,6 +37,11 @@ struct DigCycle {
 std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, const PlannedDig& dig,
                                  const CycleOptions& options = {});
 
+/// Energy and time of a bucket that only dumps what it carries: from where it is held over the dump
+/// and back. @return, @throws as cycle_of()
+std::optional<CycleShare> dump_of(const Machine& machine, const JointAngles& held,
+                                  const CycleOptions& options);
+
 /// @throws Error (bad_input) naming the sections that the machine's file lacks, or the height it
 ///         can dump from if that is less than asked for
 void require_cycle(const Machine& machine, const CycleOptions& options);

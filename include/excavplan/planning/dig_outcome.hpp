@@ -24,6 +24,7 @@ struct CycleOptions {
   double rest_of_cycle = 0.0;  ///< waiting time [s]
   /// The bucket goes back to where a dig begins with its load: no swing, no dump.
   bool keeps_load = false;
+  double carried = 0.0;  ///< by the bucket before the dig, which lifts it too, >= 0 [kg]
 };
 
 /// What stands for the best digs between two known ones.

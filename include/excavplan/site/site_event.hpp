@@ -41,7 +41,8 @@ struct SiteUpdate {
   bool taken = false;                       ///< the site is changed; else it is as before
   /// Of the estimate, and scan_not_taken (ends trust), undug_change.
   std::vector<Warning> warnings;
-  bool trustworthy = true;  ///< false after a warning that ends trust
+  std::optional<Alignment> alignment;  ///< of the scan to the ground; none of the first
+  bool trustworthy = true;             ///< false after a warning that ends trust
 };
 
 }  // namespace excavplan

@@ -75,6 +75,8 @@ SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio);
 /// State of dug soil: void_ratio_loose, no cohesion or adhesion, friction of the loosest state.
 /// @throws Error (bad_input) as require_soil()
 SoilState loose_state(const SoilKind& soil);
+/// Moist mass of so much of it [kg, m^3]. @throws Error (bad_input) as loose_state()
+double loose_mass(const SoilKind& soil, double volume);
 
 /// Penetration resistance (cone index) at a depth below the surface [Pa].
 ///
