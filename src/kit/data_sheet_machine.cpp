@@ -63,13 +63,12 @@ class Fit {
  public:
   Fit(const Known& known, const NamedDataSheet& stated) : name_(stated.name), sheet_(stated.sheet) {
     const double reach = *sheet_.ground_reach;
-    numbers_ = in_proportion(known, sheet_, reach);
+    grow(known, reach);
     const double reached = reach_of(machine_of(numbers_, name_)).ground;
     require(reached > 0.0, "data sheet: no machine of these proportions reaches the ground");
-    numbers_ = in_proportion(known, sheet_, reach * reach / reached);
+    grow(known, reach * reach / reached);
     set_torques();
     set_masses();
-    set_teeth();
     set_profile();
     set_boom();
     if (sheet_.track_gauge) {
@@ -93,6 +92,11 @@ class Fit {
   void set(const string& place, double value, const string& how) {
     numbers_[place] = value;
     how_[place] = how;
+  }
+
+  void grow(const Known& known, double length) {
+    numbers_ = in_proportion(known, sheet_, length);
+    set_teeth();
   }
 
   void set_torques() {
