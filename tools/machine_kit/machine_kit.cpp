@@ -129,7 +129,7 @@ void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, 
 
 FittedMachine told_machine(const Inputs& inputs) {
   if (inputs.machine.has_value() == inputs.data_sheet.has_value()) {
-    usage_error("machine-kit needs either a machine or --data-sheet FILE");
+    usage_error("give either a machine or --data-sheet FILE");
   }
   if (inputs.data_sheet) return machine_from_data_sheet(load_data_sheet(*inputs.data_sheet));
   return {load_machine_file(machine_path(*inputs.machine)), {}};
