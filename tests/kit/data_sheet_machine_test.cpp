@@ -52,7 +52,8 @@ void expect_met(const FittedMachine& fitted, const DataSheet& sheet) {
   double mass = machine.body->mass;
   for (const LinkMass& link : machine.links) mass += link.mass;
   const auto near = [&](const char* what, std::optional<double> stated, double found) {
-    if (stated) EXPECT_NEAR(found / *stated, 1.0, 0.1) << machine.name << ": " << what;
+    const double ratio = stated ? found / *stated : 1.0;
+    EXPECT_NEAR(ratio, 1.0, 0.1) << machine.name << ": " << what;
   };
   near("mass", sheet.operating_mass, mass);
   near("capacity", sheet.bucket_capacity, heaped_capacity(machine));
@@ -115,7 +116,9 @@ TEST(DataSheetMachine, EachNumberNamesItsSourceAndSpread) {
             std::string::npos);
   for (const FittedNumber& number : fitted.numbers) {
     EXPECT_FALSE(number.how.empty()) << number.key;
-    if (number.key == "links.boom.mass_kg") EXPECT_GT(number.spread.value_or(0.0), 0.05);
+    if (number.key == "links.boom.mass_kg") {
+      EXPECT_GT(number.spread.value_or(0.0), 0.05);
+    }
   }
   ASSERT_EQ(fitted.file.warnings.size(), 1U);
   EXPECT_EQ(fitted.file.warnings[0].code, WarningCode::data_sheet_fitted);
