@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <excavplan/machine/data_sheet.hpp>
 

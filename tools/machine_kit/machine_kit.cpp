@@ -1,8 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
-#include <system_error>
-
 #include <excavplan/kit/data_sheet_machine.hpp>
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
@@ -95,20 +92,6 @@ void write_machine(const Inputs& inputs, const MachineFile& file, Outcome& outco
     plots.files.push_back({figure, inputs.folder() + "/" + figure + ".svg"});
   }
   write_plots(plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
-}
-
-/// Runs `work`, which writes into a folder that is made now; one that it leaves empty is removed.
-template <typename Work>
-void in_folder(const std::string& folder, const Work& work) {
-  std::error_code unknown;
-  const bool is_new = !std::filesystem::exists(folder, unknown);
-  make_folder(folder);
-  try {
-    work();
-  } catch (const Error&) {
-    if (is_new) std::filesystem::remove(folder, unknown);
-    throw;
-  }
 }
 
 void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, Outcome& outcome) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/machine/data_sheet_file.hpp>
 #include <excavplan/machine/machine_file.hpp>
 
 /// @file

@@ -3,9 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-
-#include <excavplan/base/error.hpp>
 
 /// @file
 /// The figures that the maker of a machine publishes (docs/machines.md#from-a-data-sheet).
@@ -28,16 +25,5 @@ struct DataSheet {
   std::optional<double> track_gauge;      ///< from middle to middle of the tracks [m]
   std::optional<double> track_length;     ///< of the tracks, over all [m]
 };
-
-/// A data sheet in a file of its own.
-struct NamedDataSheet {
-  std::string name;  ///< of the machine
-  DataSheet sheet;   ///< with mass, capacity, reach and depth
-};
-
-/// Reads a JSON file of `name` and the keys of `data_sheet` in a machine file.
-/// @throws Error (bad_file) naming file, key, value and rule; all missing keys at once; numbers
-/// that no excavator of 0.5 to 200 t has, most often a wrong unit
-NamedDataSheet load_data_sheet(const std::string& path);
 
 }  // namespace excavplan
