@@ -5,12 +5,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/kit/machine_kit.hpp>
 #include <excavplan/kit/workspace.hpp>
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/simulators.hpp>
 
 #include "base/files.hpp"
 #include "support/errors.hpp"
@@ -141,6 +146,29 @@ TEST(DataSheetMachine, WhatCannotBeMetEndsTrust) {
   const auto warnings = check_data_sheet(fitted.file.machine, fitted.file.data_sheet);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_TRUE(warnings[0].ends_trust);
+}
+
+PlannedDig planned(const Machine& machine) {
+  const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
+  const auto simulator = default_simulator().make(machine, loam, 40.0);
+  DigSearchOptions options = budget_search();
+  options.objective = feasible_objective(machine, options.objective);
+  options.stop.evaluations = 150;
+  return search_dig(machine, *simulator, level_planning_ground(machine), options).value().dig;
+}
+
+// What a dig planned for the fitted machine differs from that of the full file, in loam at 40 %.
+TEST(DataSheetMachine, ItsPlansAreNearThoseOfTheFullFile) {
+  for (const std::string& name : proportion_machines()) {
+    const PlannedDig full = planned(load_machine(find_data_file("machines/" + name + ".json")));
+    const PlannedDig fitted =
+        planned(machine_from_data_sheet(sheet_of(name), without(name)).file.machine);
+    std::printf("%-12s payload %6.0f kg, fitted %6.0f; energy %6.1f kJ, fitted %6.1f\n",
+                name.c_str(), full.payload_mass, fitted.payload_mass, 1e-3 * full.energy,
+                1e-3 * fitted.energy);
+    EXPECT_NEAR(fitted.payload_mass / full.payload_mass, 1.0, 0.15) << name;
+    EXPECT_NEAR(fitted.energy / full.energy, 1.0, 0.15) << name;
+  }
 }
 
 std::string complaint(const std::string& text) {
