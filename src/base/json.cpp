@@ -167,6 +167,10 @@ JsonObject JsonObject::open_sealed(const std::string& name, const std::string& c
   return file;
 }
 
+JsonObject JsonObject::of_plain(const std::string& name, const std::string& content) {
+  return top(name, parse_json(name, content), "a JSON object");
+}
+
 JsonObject JsonObject::of_others(const std::string& name, const std::string& content) {
   const std::size_t start = content.find_first_not_of(" \t\r\n");
   const bool is_json = start != content.npos && content[start] == '{';

@@ -54,6 +54,9 @@ class JsonObject {
                                 const std::string& format, int version = 1,
                                 std::size_t most_values = most_json_values);
 
+  /// An object of keys alone, without "format" and "version". @throws Error (bad_file)
+  static JsonObject of_plain(const std::string& name, const std::string& content);
+
   /// The content of a file of another program, JSON or YAML (base/yaml.hpp); what is not read of
   /// it is no error. @throws Error (bad_file)
   static JsonObject of_others(const std::string& name, const std::string& content);

@@ -11,6 +11,7 @@
 
 #include "base/angles.hpp"
 #include "base/text.hpp"
+#include "machine/data_sheet_keys.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -148,13 +149,14 @@ void compare(const char* what, std::optional<double> stated, double computed, do
 }
 
 bool is_empty(const DataSheet& sheet) {
-  return !sheet.operating_mass && !sheet.bucket_capacity && !sheet.bucket_force &&
-         !sheet.arm_force && !sheet.ground_reach && !sheet.depth && !sheet.height;
+  const auto& keys = data_sheet_keys();
+  return std::none_of(keys.begin(), keys.end(),
+                      [&](const DataSheetKey& each) { return (sheet.*each.figure).has_value(); });
 }
 
 void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& sheet,
                std::vector<Warning>& warnings) {
-  constexpr double length = 0.05, force = 0.15, volume = 0.1, weight = 0.05;  // ours
+  constexpr double length = 0.05, force = 0.1, volume = 0.1, weight = 0.05, other = 0.1;  // ours
   double mass = machine.body ? machine.body->mass : std::nan("");
   for (const LinkMass& link : machine.links) mass += link.mass;
   if (machine.body) compare("mass [kg]", sheet.operating_mass, mass, weight, warnings);
@@ -166,6 +168,15 @@ void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& shee
   compare("reach on the ground [m]", sheet.ground_reach, reach.ground, length, warnings);
   compare("digging depth [m]", sheet.depth, reach.depth, length, warnings);
   compare("height of the tip [m]", sheet.height, reach.height, length, warnings);
+  compare("dump height [m]", sheet.dump_height, sheet.dump_height ? dump_height(machine) : 0.0,
+          other, warnings);
+  compare("width of the bucket [m]", sheet.bucket_width, machine.bucket.width_outside, other,
+          warnings);
+  compare("length of the tracks [m]", sheet.track_length, 2.0 * machine.track_front, other,
+          warnings);
+  if (machine.swing) {
+    compare("rate of the swing [rad/s]", sheet.swing_rate, machine.swing->speed, other, warnings);
+  }
 }
 
 }  // namespace
@@ -180,6 +191,18 @@ Reach reach_of(const Machine& machine) {
     }
   }
   return reach;
+}
+
+double dump_height(const Machine& machine) {
+  require_machine(machine);
+  double pin = -infinity;
+  for (int boom = 0; boom <= steps; ++boom) {
+    for (int arm = 0; arm <= steps; ++arm) {
+      const JointAngles joints(at(machine.limits[0], boom), at(machine.limits[1], arm), 0.0);
+      pin = std::max(pin, link_positions(machine, joints).bucket_pin.y());
+    }
+  }
+  return pin - machine.bucket_length;
 }
 
 std::vector<Vector2d> reach_outline(const Machine& machine) {

@@ -4,29 +4,12 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "machine/data_sheet_keys.hpp"
 #include "machine/machine_reading.hpp"
 #include "machine/urdf_machine.hpp"
 
 namespace excavplan {
 namespace {
-
-DataSheet read_data_sheet(JsonObject file) {
-  DataSheet sheet;
-  const std::array<std::pair<const char*, std::optional<double> DataSheet::*>, 7> numbers = {
-      {{"operating_mass_kg", &DataSheet::operating_mass},
-       {"bucket_capacity_m3", &DataSheet::bucket_capacity},
-       {"bucket_force_n", &DataSheet::bucket_force},
-       {"arm_force_n", &DataSheet::arm_force},
-       {"ground_reach_m", &DataSheet::ground_reach},
-       {"depth_m", &DataSheet::depth},
-       {"height_m", &DataSheet::height}}};
-  for (const auto& [key, member] : numbers) {
-    if (file.has(key)) sheet.*member = file.number(key, 1e-3, 1e8);
-  }
-  file.ignore("sources");
-  file.done();
-  return sheet;
-}
 
 MachineFile file_of(const std::string& name, std::string text) {
   JsonObject file = JsonObject::of_text(name, text, "excavplan-machine");

@@ -38,6 +38,17 @@ Json examined_json(const Machine& machine, const std::string& folder) {
       {"robot_joints", joints_json(machine.robot_joints)}};
 }
 
+Json fitted_json(const std::vector<FittedNumber>& numbers) {
+  Json list = Json::array();
+  for (const FittedNumber& number : numbers) {
+    list.push_back({{"key", number.key},
+                    {"value", number.value},
+                    {"how", number.how},
+                    {"spread", number.spread ? Json(*number.spread) : Json(nullptr)}});
+  }
+  return list;
+}
+
 /// The dig on level ground at the density nearest to a usual one.
 const PathLibraryEntry& shown_entry(const PathLibrary& library) {
   constexpr double usual = 40.0;  // [%]

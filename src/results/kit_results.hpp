@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <excavplan/kit/data_sheet_machine.hpp>
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -13,6 +15,9 @@ namespace excavplan {
 
 /// Reach, forces, capacity and joints of a machine. @param folder  of its kit
 Json examined_json(const Machine& machine, const std::string& folder);
+
+/// What was fitted to a data sheet.
+Json fitted_json(const std::vector<FittedNumber>& numbers);
 
 /// The entry of a library on level ground at the density nearest to a usual one.
 const PathLibraryEntry& shown_entry(const PathLibrary& library);

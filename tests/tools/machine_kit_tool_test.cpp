@@ -45,6 +45,30 @@ TEST_F(Tools, FromAUrdfToAPlan) {
   EXPECT_EQ(experiment.at("conditions").size(), 1U);
 }
 
+TEST_F(Tools, FromADataSheetToAPlan) {
+  json sheet = {{"name", "digger"},
+                {"operating_mass_kg", 19500},
+                {"bucket_capacity_m3", 0.8},
+                {"ground_reach_m", 9.7},
+                {"depth_m", 6.62}};
+  const std::string file = folder.write("sheet.json", sheet.dump());
+  const Words to_kit = {"--output", folder.file("digger")};
+  const json kit = answer("machine-kit", Words{"--data-sheet", file} + to_kit + small_kit);
+  EXPECT_TRUE(warns(kit, "data_sheet_fitted"));
+  EXPECT_GT(kit.at("fitted").size(), 40U);
+  EXPECT_TRUE(fs::is_regular_file(folder.file("digger/measures.svg")));
+  const json plan = answer("plan-path", {"--machine", folder.file("digger"), "--density", "40"});
+  EXPECT_FALSE(warns(plan, "data_sheet_differs"));
+  sheet["height_m"] = 14.0;
+  const std::string wrong = folder.write("wrong.json", sheet.dump());
+  answer("machine-kit", Words{"--data-sheet", wrong, "--output", folder.file("off")} + small_kit);
+  const json off = answer("plan-path", {"--machine", folder.file("off"), "--density", "40"});
+  EXPECT_TRUE(warns(off, "data_sheet_differs"));
+  sheet["ground_reach_m"] = 9700;
+  const std::string refused = folder.write("refused.json", sheet.dump());
+  EXPECT_EQ(run_program("machine-kit", {"--data-sheet", refused}).code, 3);
+}
+
 // The picture is there though the machine cannot make the dig of a kit.
 TEST_F(Tools, AUrdfIsDrawnAsUnderstood) {
   auto joints = zx120_joints();

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
-#include <system_error>
-
+#include <excavplan/kit/data_sheet_machine.hpp>
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
 
@@ -15,6 +13,7 @@
 #include "inputs/plots.hpp"
 #include "machine_kit/kit_outcome.hpp"
 #include "machine_kit/kit_plots.hpp"
+#include "results/kit_results.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -24,7 +23,9 @@ const About about = {
     "makes all that your own machine needs before plan-path: checks its file, draws where it "
     "reaches and how hard it digs, fits density laws and builds path libraries for the soils, in "
     "about a minute. plan-path, estimate-density and run-experiment find them by --machine.",
-    {{"machine-kit digger.json", "into the folder digger-kit"},
+    {{"machine-kit --data-sheet sheet.json --output digger",
+      "from a data sheet; then --machine digger"},
+     {"machine-kit digger.json", "into the folder digger-kit"},
      {"plan-path --machine digger.json --density 40", "finds digger-kit beside it"},
      {"machine-kit digger.urdf --soil loam", "from a URDF, with digger.json beside it if there"},
      {"machine-kit zx200 --output kit", "of a shipped machine; then --machine kit"}},
@@ -32,7 +33,8 @@ const About about = {
     true};
 
 struct Inputs {
-  std::string machine;
+  std::optional<std::string> machine;
+  std::optional<std::string> data_sheet;
   std::optional<std::string> output;
   std::string soils = "loam,sand,clay,gravel";
   GoalInputs goal;
@@ -42,11 +44,16 @@ struct Inputs {
   std::uint64_t threads = 0;
   Plots plots;
 
-  std::string folder() const { return output.value_or(default_kit(machine)); }
+  /// The file that tells the machine.
+  std::string word() const { return data_sheet ? *data_sheet : *machine; }
+  std::string folder() const { return output.value_or(default_kit(word())); }
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("machine", inputs.machine, "machine file, URDF, or a shipped machine");
+  arguments.file("data-sheet", inputs.data_sheet,
+                 "in place of the machine: a JSON file of the figures its maker publishes, from "
+                 "which it is fitted");
   arguments.folder(
       "output", inputs.output,
       "folder for machine.json, pictures, laws and libraries (default: NAME-kit beside "
@@ -81,30 +88,16 @@ KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& con
 void write_machine(const Inputs& inputs, const MachineFile& file, Outcome& outcome) {
   write_file(inputs.folder() + "/" + kit_machine, file.text);
   Plots plots;
-  for (const char* figure : {"joints", "reach"}) {
+  for (const char* figure : {"joints", "measures", "reach"}) {
     plots.files.push_back({figure, inputs.folder() + "/" + figure + ".svg"});
   }
   write_plots(plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
 }
 
-/// Runs `work`, which writes into a folder that is made now; one that it leaves empty is removed.
-template <typename Work>
-void in_folder(const std::string& folder, const Work& work) {
-  std::error_code unknown;
-  const bool is_new = !std::filesystem::exists(folder, unknown);
-  make_folder(folder);
-  try {
-    work();
-  } catch (const Error&) {
-    if (is_new) std::filesystem::remove(folder, unknown);
-    throw;
-  }
-}
-
 void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, Outcome& outcome) {
   const std::vector<SoilKind> soils = soils_named(inputs.soils);
   const KitOptions options = options_of(inputs, file.machine, console);
-  const std::string path = machine_path(inputs.machine);
+  const std::string path = inputs.data_sheet ? *inputs.data_sheet : machine_path(*inputs.machine);
   const OptionNames names = {{"this dig", path + ": a dig of its size"},
                              {"machine kit: ", path + ": "}};
   for (const SoilKind& soil : soils) {
@@ -117,10 +110,19 @@ void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, 
   }
 }
 
+FittedMachine told_machine(const Inputs& inputs) {
+  if (inputs.machine.has_value() == inputs.data_sheet.has_value()) {
+    usage_error("give either a machine or --data-sheet FILE");
+  }
+  if (inputs.data_sheet) return machine_from_data_sheet(load_data_sheet(*inputs.data_sheet));
+  return {load_machine_file(machine_path(*inputs.machine)), {}};
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
-  const MachineFile file = load_machine_file(machine_path(inputs.machine));
+  const auto [file, fitted] = told_machine(inputs);
   Outcome outcome = examined(file, inputs.folder());
+  if (inputs.data_sheet) outcome.json["fitted"] = fitted_json(fitted);
   for (Warning& each : goal_warnings(inputs.goal, {file.machine})) {
     outcome.warnings.push_back(std::move(each));
   }
@@ -128,9 +130,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   write_plots(inputs.plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
   in_folder(inputs.folder(), [&] { make_kits(inputs, file, console, outcome); });
   outcome.json["wall_time_s"] = watch.seconds();
+  const bool by_folder = inputs.output || inputs.data_sheet;
   if (!outcome.stopped_early) {
     outcome.lines.push_back("next: plan-path --machine " +
-                            (inputs.output ? *inputs.output : inputs.machine) + " --density 40");
+                            (by_folder ? inputs.folder() : *inputs.machine) + " --density 40");
   }
   return outcome;
 }

@@ -26,6 +26,10 @@ struct Reach {
 /// @throws Error (bad_input) as require_machine()
 Reach reach_of(const Machine& machine);
 
+/// Largest height of the tip with the bucket hanging straight down from its pin [m].
+/// @throws Error (bad_input) as require_machine()
+double dump_height(const Machine& machine);
+
 /// The curve of the tip with the bucket in line with the arm, or as near to it as it goes: boom
 /// down with the arm stretched, arm in, boom up, arm out. Closed; x, z [m].
 std::vector<Eigen::Vector2d> reach_outline(const Machine& machine);

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/base/warning.hpp>
+#include <excavplan/machine/data_sheet.hpp>
 #include <excavplan/machine/machine.hpp>
 
 /// @file
@@ -15,17 +15,6 @@
 /// (docs/machines.md#urdf).
 
 namespace excavplan {
-
-/// What the maker says of a machine, for comparison; nothing here affects a dig.
-struct DataSheet {
-  std::optional<double> operating_mass;   ///< [kg]
-  std::optional<double> bucket_capacity;  ///< heaped 1:1 [m^3]
-  std::optional<double> bucket_force;     ///< digging force of the bucket [N]
-  std::optional<double> arm_force;        ///< digging force of the arm [N]
-  std::optional<double> ground_reach;     ///< largest reach on the ground [m]
-  std::optional<double> depth;            ///< largest digging depth [m]
-  std::optional<double> height;           ///< largest height of the tip [m]
-};
 
 /// A machine, and what its file says besides.
 struct MachineFile {
