@@ -33,11 +33,9 @@ std::string foretold(const ForetoldStep& step) {
          rounded(1e-3 * energy[1]) + "), " + rounded(step.time) + " s";
 }
 
-bool digs(JobAction what) { return what == JobAction::dig || what == JobAction::finish; }
-
 std::string shown_step(const JobStep& step) {
   std::string text = "<JobStep " + std::to_string(step.id) + ": " + name(step.what);
-  if (digs(step.what)) text += " " + foretold(step.predicted);
+  if (step.digs()) text += " " + foretold(step.predicted);
   if (step.what == JobAction::move) text += " to " + place(step.base);
   if (!step.reason.empty()) text += ", " + step.reason;
   return text + (step.trustworthy ? ">" : ", not trustworthy>");
@@ -76,7 +74,7 @@ void bind_step(py::module_& module) {
       .def_property_readonly(
           "path",
           [](const JobStep& step) {
-            return digs(step.what) ? std::optional(step.path) : std::nullopt;
+            return step.digs() ? std::optional(step.path) : std::nullopt;
           },
           "DigPath in the frame of its line; None of another step.")
       .def_property_readonly(
@@ -87,6 +85,11 @@ void bind_step(py::module_& module) {
           "Of the bucket pin where the bucket opens, if it does, in the site's frame [m].")
       .def_readonly("keeps_load", &JobStep::keeps_load,
                     "The bucket does not open: it goes back with its load.")
+      .def_readonly("dumps_first", &JobStep::dumps_first,
+                    "What earlier passes left in the bucket is dumped before all else.")
+      .def_property_readonly(
+          "carried", [](const JobStep& step) { return step.carried ? step.carried->volume : 0.0; },
+          "Loose soil in the bucket as the step begins [m^3].")
       .def_readonly("truck", &JobStep::truck, "That is loaded, from 1, or None.")
       .def_readonly("predicted", &JobStep::predicted, "Of a dig.")
       .def_readonly("trustworthy", &JobStep::trustworthy, "False: see the warnings.")

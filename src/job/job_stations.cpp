@@ -18,7 +18,7 @@ constexpr double end_wall = 0.67;       // of that reach to the far end: nearer 
                                         // little for a steep cut
 constexpr double overlap = 0.25;        // of what is dug from two places in succession [m]
 constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
-constexpr double end_margin = 0.0;      // to the ends of the design, likewise [m]
+constexpr double end_margin = 0.03;     // to the ends of the design, half a cell at least [m]
 constexpr double lane_overlap = 0.1;    // of two lanes [m]
 constexpr double standing_step = 0.2;   // of the ground under the tracks that is looked at [m]
 constexpr double beside_edge = 0.6;     // of tracks that stand beside the design [m]

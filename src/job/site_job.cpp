@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <excavplan/planning/dig_cycle.hpp>
@@ -41,7 +42,7 @@ constexpr double most_carried = 0.4;         // of a heaped bucket, through a pa
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double high_share = 1.0;           // of the tolerance: higher cells call for a pass
-constexpr double most_high = 0.02;           // share of cells that may stay so
+constexpr double most_high = 0.03;           // share of cells that may stay so
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
@@ -74,19 +75,16 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
   return event;
 }
 
-/// Mean of a cell and its neighbours that count, since a single one is as much noise [m].
-double mean_above_design(const JobMap& map, const Terrain& ground, Cell cell) {
-  double sum = 0.0;
-  int known = 0;
+/// Of a cell and its neighbours that count, since a single one is as much noise [m].
+std::vector<double> above_design_around(const JobMap& map, const Terrain& ground, Cell cell) {
+  std::vector<double> above;
   const auto add = [&](Cell at) {
-    const double above = map.counts(at.row, at.col) ? above_design(map, ground, at) : std::nan("");
-    if (std::isnan(above)) return;
-    sum += above;
-    ++known;
+    const double one = map.counts(at.row, at.col) ? above_design(map, ground, at) : std::nan("");
+    if (!std::isnan(one)) above.push_back(one);
   };
   add(cell);
   for_each_neighbour(map.counts, cell, add);
-  return known > 0 ? sum / known : std::nan("");
+  return above;
 }
 
 /// Sets what is measured of the ground.
@@ -111,7 +109,8 @@ JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& n
     if (!map.counts(at.row, at.col)) return;
     errors.push_back(std::abs(error));
     squares += error * error;
-    if (std::abs(mean_above_design(map, ground, at)) > 2.0 * tolerance) ++beyond;
+    auto around = above_design_around(map, ground, at);
+    if (std::abs(median(around)) > 2.0 * tolerance) ++beyond;
   });
   progress.seen = cells > 0 ? static_cast<double>(seen) / cells : 0.0;
   if (errors.empty()) return progress;
@@ -365,7 +364,9 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
   int heaps = 0;
   for_each_in_reach(base, [&](Cell cell) {
     if (std::isnan(above_design(map, ground.expected(), cell))) return;
-    const double above = mean_above_design(map, ground.expected(), cell);
+    const auto around = above_design_around(map, ground.expected(), cell);
+    const double above =
+        std::accumulate(around.begin(), around.end(), 0.0) / static_cast<double>(around.size());
     ++count;
     if (above > high_share * tolerance) ++high;
     if (above > heap_share * tolerance) ++heaps;

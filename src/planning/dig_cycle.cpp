@@ -89,8 +89,8 @@ void check(const DigPath& path, const PlannedDig& dig, const CycleOptions& optio
 
 /// To lift what the bucket holds already along with the dig, at least.
 double work_on(double carried, const Machine& machine, const DigPath& path, const Poses& lift) {
-  const double rise = pin_height(machine, lift.front().joints) -
-                      pin_height(machine, path.poses.front().joints);
+  const double rise =
+      pin_height(machine, lift.front().joints) - pin_height(machine, path.poses.front().joints);
   return carried * gravity * std::max(0.0, rise);
 }
 

@@ -45,12 +45,14 @@ Json line_of(const TrialStep& at) {
               {"energy_j", at.done.energy},
               {"base", log_base_json(at.done.report.base.value_or(at.step.base))},
               {"plan_s", at.planning_time}};
-    default:
-      return {{"type", name(at.step.what)},
-              {"time_s", at.done.time},
-              {"energy_j", at.done.energy},
-              {"plan_s", at.planning_time},
-              {"reason", at.step.reason}};
+    default: {
+      Json line = {{"type", name(at.step.what)},
+                   {"time_s", at.done.time},
+                   {"plan_s", at.planning_time},
+                   {"reason", at.step.reason}};
+      if (at.step.dumps_first) line["energy_j"] = at.done.energy;
+      return line;
+    }
   }
 }
 

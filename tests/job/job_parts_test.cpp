@@ -114,6 +114,47 @@ TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
   }
 }
 
+TEST(JobFrame, ReversedIsTheSameDesignFromItsOtherEnd) {
+  HandMadeJob job;
+  const JobFrame frame = job.frame(), back = reversed(frame);
+  for (const Eigen::Vector2d& at : {Eigen::Vector2d(5.0, 0.3), Eigen::Vector2d(12.0, -0.2)})
+    EXPECT_LT((back.of(frame.place(at.x(), at.y())) + at).norm(), 1e-12);
+  EXPECT_EQ(back.near, -frame.far);
+  EXPECT_EQ(back.far, -frame.near);
+  EXPECT_EQ(back.left, -frame.right);
+}
+
+TEST(JobStations, FromBeyondTheFarEndIsTheNearOne) {
+  HandMadeJob job;
+  const JobFrame frame = job.frame(), back = reversed(frame);
+  const auto beyond = stations_beyond(frame, job.settings);
+  ASSERT_EQ(beyond.size(), 1U);
+  EXPECT_TRUE(beyond.front().is_beyond);
+  const BasePose base = base_at(back, beyond.front(), job.ground, job.settings.site.machine);
+  const Eigen::Vector2d at = frame.of({base.x, base.y});
+  EXPECT_GT(at.x(), frame.far + job.settings.site.machine.track_front);
+  const Eigen::Vector2d ahead(std::cos(base.heading), std::sin(base.heading));
+  EXPECT_LT(
+      (frame.of(Eigen::Vector2d(base.x, base.y) + ahead) - at - Eigen::Vector2d(-1.0, 0.0)).norm(),
+      1e-9);
+  const WorkRange range = work_range(back, job.settings.site.machine, beyond.front().along);
+  EXPECT_NEAR(at.x() - range.near, frame.far, 0.05);
+}
+
+TEST(ScanDatum, TheMeanOfAllScansTellsHowFarTheFirstWasOff) {
+  // The first scan lies 9 mm too high and rises by 1 mm/m along x too much; the others are exact.
+  ScanDatum datum;
+  Alignment found;
+  found.centre = {4.0, -3.0, 0.0};
+  found.motion.setConstant(7.0);  // what is corrected for does not count
+  found.found[2] = -0.009 - 0.001 * found.centre.x();
+  found.found[4] = 0.001;
+  for (int i = 0; i < 99; ++i) datum.learn(found);
+  EXPECT_NEAR(datum.plane().x(), 0.99 * 0.009, 1e-12);
+  EXPECT_NEAR(datum.plane().y(), 0.99 * 0.001, 1e-12);
+  EXPECT_NEAR(datum.plane().z(), 0.0, 1e-12);
+}
+
 /// A hand-made job that is dug, with a corner of its floor that was not seen.
 struct HiddenCorner : HandMadeJob {
   HiddenCorner() {
@@ -156,8 +197,9 @@ TEST(Lookout, IsBesideTheDesignOffTheSpoil) {
       EXPECT_FALSE(track.y() > 1.55 && track.x() > -5.95) << track.transpose();
     }
   }
-  job.settings.design.obstacles = {{"shed", box(-9.0, -8.0, 9.0, -1.0), 3.0},
-                                   {"fence", box(-11.0, -1.0, -0.5, 1.5), 2.0}};
+  job.settings.design.obstacles = {{"shed", box(-9.0, -8.0, 17.0, -1.0), 3.0},
+                                   {"fence", box(-11.0, -1.0, -0.5, 1.5), 2.0},
+                                   {"bank", box(10.5, -1.0, 17.0, 6.0), 2.0}};
   EXPECT_FALSE(job.best(usual_looks()));
 }
 
@@ -310,11 +352,12 @@ TEST(LaneView, WhatIsPushedAsideIsNotOfThePassThatPushedIt) {
     }
   });
   ASSERT_GT(aside, 0.0);
-  const ShapeChange change = view.change(patch, {0.0, 1e9});
+  const ShapeChange change = view.change(patch, {0.0, 0.03, 1e9});
   EXPECT_NEAR(change.cleared, under, 1e-9);
+  EXPECT_NEAR(change.finished, under / 0.05, 1e-9);
   EXPECT_NEAR(change.gained, under - aside, 1e-9);
   EXPECT_EQ(change.at_end, 0.0);
-  EXPECT_NEAR(view.change(patch, {0.0, 5.0}).at_end, 0.5 * change.gained, 0.01 * under);
+  EXPECT_NEAR(view.change(patch, {0.0, 0.03, 5.0}).at_end, 0.5 * change.gained, 0.01 * under);
 }
 
 TEST(JobRecord, ComesBackWithAllThatItRemembers) {
@@ -410,6 +453,52 @@ TEST(JobMotion, ALoadThatIsKeptGoesBackWithoutADump) {
     EXPECT_NE(point.phase, DigPhase::dump);
   }
   EXPECT_LT((motion->points.front().joints - motion->points.back().joints).norm(), 1e-6);
+}
+
+TEST(JobMotion, WhatIsCarriedIsDumpedFirst) {
+  const HandMadeJob job;
+  const DigPath path =
+      std::get<DigPath>(make_dig_path(zx120(), {0.7, 0.3, 1.2}, 6.2, [](double) { return 0.0; }));
+  JobStep step;
+  step.what = JobAction::scan;
+  step.base = {2.0, 0.0, 0.0, 0.0};
+  step.dump = {5.0, 4.0, 2.4};
+  CarriedLoad load;
+  load.volume = 0.15;
+  load.joints << path.poses.back().joints, 0.1;
+  step.carried = load;
+  auto still = motion_of(job.settings, job.ground, step);
+  EXPECT_TRUE(std::get<Trajectory>(still).points.empty());
+  step.dumps_first = true;
+  const auto alone = motion_of(job.settings, job.ground, step);
+  const auto* motion = std::get_if<Trajectory>(&alone);
+  ASSERT_NE(motion, nullptr) << std::get<BlockedWay>(alone).message;
+  EXPECT_TRUE(motion->warnings.empty());
+  const auto pin_off = [&](const TrajectoryPoint& point) {
+    const double turn = point.swing.angle + step.base.heading;
+    const Eigen::Vector2d pin = link_positions(zx120(), point.joints).bucket_pin;
+    const Eigen::Vector3d at(step.base.x + pin.x() * std::cos(turn), pin.x() * std::sin(turn),
+                             pin.y());
+    return (at - step.dump).norm();
+  };
+  const auto nearest = [&](const Trajectory& of) {
+    double least = 10.0;
+    for (const TrajectoryPoint& point : of.points) least = std::min(least, pin_off(point));
+    return least;
+  };
+  EXPECT_LT(nearest(*motion), 0.02);
+  EXPECT_LT((motion->points.front().joints - load.joints.head<3>()).norm(), 1e-9);
+  EXPECT_NEAR(motion->points.front().swing.angle, 0.1, 1e-9);
+
+  step.what = JobAction::finish;
+  step.path = path;
+  step.keeps_load = true;  // of the dig after it: what was carried is over the dump once
+  const auto made = motion_of(job.settings, job.ground, step);
+  const auto* dig = std::get_if<Trajectory>(&made);
+  ASSERT_NE(dig, nullptr) << std::get<BlockedWay>(made).message;
+  EXPECT_LT(nearest(*dig), 0.02);
+  EXPECT_EQ(dig->points.front().phase, DigPhase::approach);
+  EXPECT_EQ(dig->points.back().phase, DigPhase::back);
 }
 
 TEST(JobMotion, ATruckInTheWayBlocksIt) {

@@ -172,6 +172,8 @@ TEST(SiteJob, WithExactScansATrenchIsDugToItsDesign) {
   const JobProgress done = job.progress();
   EXPECT_EQ(step.what, JobAction::stop);
   EXPECT_EQ(blocked, 0);
+  EXPECT_EQ(of.truth.solids().held, 0.0);
+  EXPECT_NEAR(of.truth.solids().cut, of.truth.solids().lying, 1e-9 * of.truth.solids().cut);
   EXPECT_LT(done.left_volume, 0.15 * done.design_volume);
   EXPECT_GT(done.seen, 0.95);
   EXPECT_GT(share_within(of.truth.ground(), 0.03), 0.92);

@@ -126,6 +126,32 @@ TEST_F(Cycle, AKeptLoadIsNeitherSwungNorDumped) {
   EXPECT_LT(kept.total.time, whole.total.time);
 }
 
+TEST_F(Cycle, WhatIsCarriedIsLiftedAgain) {
+  CycleOptions keeps;
+  keeps.keeps_load = true;
+  CycleOptions more = keeps;
+  more.carried = 200.0;
+  const DigCycle without = cycle(100.0, keeps), with = cycle(100.0, more);
+  auto lifted = path_.poses.begin();
+  while (lifted->phase != DigPhase::lift) ++lifted;
+  --lifted;
+  const double rise = link_positions(bare_, lifted->joints).bucket_pin.y() -
+                      link_positions(bare_, path_.poses.front().joints).bucket_pin.y();
+  EXPECT_NEAR(with.dig.energy - without.dig.energy, 200.0 * 9.81 * std::max(0.0, rise), 1.0);
+  EXPECT_NEAR(with.lift.energy, cycle(300.0, keeps).lift.energy, 1e-6);
+}
+
+TEST_F(Cycle, ABucketThatOnlyDumpsCostsThatPartOfACycle) {
+  CycleOptions options = by_angle(1.2);
+  options.carried = 300.0;
+  const auto dump = dump_of(bare_, path_.poses.back().joints, options);
+  ASSERT_TRUE(dump.has_value());
+  const DigCycle whole = cycle(300.0, by_angle(1.2));
+  EXPECT_GT(dump->energy, whole.swing.energy + whole.dump.energy);
+  EXPECT_LT(dump->energy, whole.total.energy);
+  EXPECT_LT(dump->time, whole.total.time);
+}
+
 TEST_F(Cycle, SwingToTheRightCostsAsMuch) {
   const DigCycle left = cycle(300.0, by_angle(1.2)), right = cycle(300.0, by_angle(-1.2));
   EXPECT_EQ(right.total.energy, left.total.energy);

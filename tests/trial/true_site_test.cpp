@@ -96,6 +96,27 @@ TEST(TrueSite, ALoadIsKeptUntilItIsDumped) {
   EXPECT_GT(height_at(truth.ground().surface(), 2.5, 3.5), 0.2);
 }
 
+TEST(TrueSite, AKeptLoadIsDumpedBeforeAScan) {
+  const HiddenSite site = SiteAtOrigin().read();
+  TrueSite truth(site, zx120());
+  JobStep first = dig_step();
+  first.keeps_load = true;
+  truth.execute(first);
+  const double held = truth.solids().held;
+  JobStep look = first;
+  look.what = JobAction::scan;
+  look.keeps_load = false;
+  look.dumps_first = true;
+  look.carried = CarriedLoad{0.1, {-0.3, 0.9, 1.5, 0.0}};
+  const TrueStep done = truth.execute(look);
+  EXPECT_GT(held, 50.0);
+  EXPECT_EQ(truth.solids().held, 0.0);
+  EXPECT_NEAR(truth.solids().cut, truth.solids().lying, 1e-9 * truth.solids().cut);
+  EXPECT_GT(done.energy, 5e3);
+  EXPECT_GT(done.time, 5.0);
+  EXPECT_TRUE(done.report.scan.has_value());
+}
+
 TEST(TrueSite, WhatTheBucketCannotHoldFallsBack) {
   const HiddenSite site = SiteAtOrigin().read();
   TrueSite truth(site, zx120());
