@@ -148,6 +148,10 @@ struct TrueSite::State {
             "at most " + readable(reach) + " at that height");
   }
 
+  double as_the_scale_reads(double mass) const {
+    return mass * (1.0 + site.errors.payload_scale) *
+           (1.0 + site.errors.payload_noise * random(scale_stream).normal());
+  }
   TrueStep dig(const JobStep& job);
   CycleShare dump_first(const JobStep& job);
   CycleOptions cycle_after(const JobStep& job, double from, const Vector2d& dump) const;
@@ -255,8 +259,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   done.stall = dug.stall;
   done.report.stalled = dug.stall.has_value();
   done.report.joint_work = done.energy;
-  done.report.payload_mass = dug.payload_mass * (1.0 + site.errors.payload_scale) *
-                             (1.0 + site.errors.payload_noise * random(scale_stream).normal());
+  done.report.payload_mass = as_the_scale_reads(dug.payload_mass);
   if (options.scans_each_dig) take_scan(done);
   return done;
 }
