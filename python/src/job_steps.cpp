@@ -73,9 +73,7 @@ void bind_step(py::module_& module) {
                     "Of that line, so far to the left of the swing axis [m].")
       .def_property_readonly(
           "path",
-          [](const JobStep& step) {
-            return step.digs() ? std::optional(step.path) : std::nullopt;
-          },
+          [](const JobStep& step) { return step.digs() ? std::optional(step.path) : std::nullopt; },
           "DigPath in the frame of its line; None of another step.")
       .def_property_readonly(
           "site_from_line", [](const JobStep& step) { return array(site_from_line(step)); },

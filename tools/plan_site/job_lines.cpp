@@ -73,8 +73,8 @@ std::vector<std::string> step_lines(const JobStep& step) {
   lines.push_back((step.what == JobAction::move ? "go to        " : "machine at   ") +
                   place_text(step.base));
   if (step.dumps_first)
-    lines.push_back("dump first   what passes left in the bucket, at x = " + readable(step.dump.x()) +
-                    " m, y = " + readable(step.dump.y()) + " m");
+    lines.push_back("dump first   what passes left in the bucket, at x = " +
+                    readable(step.dump.x()) + " m, y = " + readable(step.dump.y()) + " m");
   if (step.path.poses.empty()) return lines;
   const ForetoldStep& foretold = step.predicted;
   lines.push_back("path         " + path_text(step.path.parameters, step.path.start_x) + ", lane " +
