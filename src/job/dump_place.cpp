@@ -78,6 +78,7 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
   double least = std::numeric_limits<double>::infinity();
   for (double radius = nearest * reach; radius <= farthest * reach; radius += radius_step) {
     for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
+      if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
       const Vector2d place =
           Vector2d(base.x, base.y) +
           radius * Vector2d(std::cos(base.heading + turn), std::sin(base.heading + turn));

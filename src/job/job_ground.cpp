@@ -129,10 +129,10 @@ std::size_t JobGround::unseen_digs(std::optional<JobAction> kind) const {
 }
 
 ScanNews JobGround::take_in(const SiteEvent& event) {
+  const SiteUpdate update = site_.update(event);
   const Terrain expected = std::move(expected_);
   const GroundState before = std::move(scanned_);
   const bool is_first = before.seen.size() == 0;
-  const SiteUpdate update = site_.update(event);
   warnings_ = update.warnings;
   const HeightMap& cells = before.terrain.bank;
   const bool has_grown = !is_first && !same_grid(cells, site_.ground().terrain.bank);

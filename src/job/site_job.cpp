@@ -198,6 +198,18 @@ struct SiteJob::State {
   void save_changed(const JobRecord& before, const JobStep& step, const StepReport& report);
   void log_from(const GroundState& of_first);
   void restore();
+  /// A report that is refused changes nothing.
+  template <typename Change>
+  void or_as_before(const JobRecord& before, Change change) {
+    try {
+      change();
+    } catch (...) {
+      record = before;
+      hang_design();
+      restore();
+      throw;
+    }
+  }
   std::string first_file() const { return folder + "/job-first-ground.tif"; }
 
   std::string folder;
@@ -268,6 +280,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   foretell(step, *dump, *dig);
   if (!check_motion(step) && step.keeps_load) {
     step.keeps_load = false;
+    step.reason.clear();
     foretell(step, *dump, *dig);
     (void)check_motion(step);
   }
@@ -295,6 +308,8 @@ void SiteJob::State::foretell(JobStep& step, const DumpPlace& dump, StepDig& dig
                          &step.predicted.energy_interval[1]})
     *energy += before->energy;
   step.predicted.time += before->time;
+  dig.dig.cycle_energy += before->energy;  // as will be reported
+  dig.dig.cycle_time += before->time;
 }
 
 /// @return whether it can be trusted
@@ -302,7 +317,7 @@ bool SiteJob::State::check_motion(JobStep& step) {
   const StepMotion motion = checked_motion(settings, ground.expected(), step);
   step.warnings = motion.warnings;
   step.trustworthy = motion.is_trustworthy;
-  step.reason = motion.blocked;
+  if (!motion.blocked.empty()) step.reason = motion.blocked;
   record.rests_at = motion.rests_at;
   return step.trustworthy;
 }
@@ -376,7 +391,7 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
 
 /// How the ground lies that passes from here left.
 void SiteJob::State::learn_floor() {
-  if (record.passes_here == 0) return;
+  if (record.passes_here == 0 || stations[record.station].is_lookout()) return;
   std::vector<double> above;
   for_each_in_reach(record.base, [&](Cell cell) {
     const double error = above_design(map, ground.expected(), cell);
@@ -445,6 +460,7 @@ JobStep SiteJob::State::leave() {
     record.wants_scan = place->is_lookout();
     return move_step(*place);
   }
+  if (record.carried) return step_of(JobAction::stop, "the soil in the bucket has no place");
   if (now.is_finished) return step_of(JobAction::stop, "finished");
   const std::string found = ": 95 % lie within " + readable(1e3 * now.p95, 2) + " mm, " +
                             readable(100.0 * now.beyond_twice, 2) +
@@ -503,6 +519,11 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
       record.truck_load = 0.0;
       ++record.trucks;
     }
+  }
+  if (report.stalled && step.dumps_first) {
+    JobStep dumped = step;
+    dumped.what = JobAction::scan;
+    ground.expect(dumped, record.learning.height_bias.mean);
   }
   if (!report.stalled) {
     record.deepest_cut = std::min(JobRecord{}.deepest_cut, after_success * record.deepest_cut);
@@ -617,7 +638,7 @@ void SiteJob::done(long long step, const StepReport& report) {
   const std::optional<JobStep>& present = state_->record.present;
   if (!present || present->id != step || present->what == JobAction::stop) return;
   const JobRecord before = state_->record;
-  state_->end_step(report);
+  state_->or_as_before(before, [&] { state_->end_step(report); });
   state_->save_changed(before, *before.present, report);
 }
 
@@ -627,7 +648,7 @@ void SiteJob::look(const Scan& scan, double time) {
   StepReport report;
   report.scan = scan;
   report.time = time;
-  state_->take_scan(report);
+  state_->or_as_before(before, [&] { state_->take_scan(report); });
   if (record.present && record.present->what != JobAction::move) {
     record.last_step = record.present->id;
     record.present.reset();

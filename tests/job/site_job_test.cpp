@@ -116,6 +116,27 @@ TEST(SiteJob, AScanOfNoStepChangesThePlan) {
   expect_same(begun.job.next(), step);
 }
 
+TEST(SiteJob, AScanThatIsRefusedChangesNothing) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  SiteJob job = of.begin();
+  do {
+    of.make_step(job);
+  } while (!of.report.scan);
+  const StepReport twice = of.report;
+  const JobStep step = job.next();
+  ASSERT_EQ(step.what, JobAction::dig);
+  const std::string record = of.record();
+  const double left = job.progress().left_volume;
+  EXPECT_NE(error_of([&] { job.done(step.id, twice); }).find("already"), std::string::npos);
+  EXPECT_NE(error_of([&] { job.look(*twice.scan, twice.time); }), "");
+  EXPECT_EQ(of.record(), record);
+  EXPECT_EQ(job.progress().left_volume, left);
+  expect_same(job.next(), step);
+  of.make_step(job);
+  EXPECT_GT(job.next().id, step.id);
+}
+
 TEST(SiteJob, AMoveThatWasAskedForOutlastsAScan) {
   const ShortTrench site;
   TrenchJob of{site};
