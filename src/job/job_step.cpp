@@ -22,4 +22,6 @@ const char* name(JobAction action) {
   return "unknown action";
 }
 
+bool digs(JobAction action) { return action == JobAction::dig || action == JobAction::finish; }
+
 }  // namespace excavplan

@@ -137,7 +137,7 @@ class CycleWay {
   const FrontJoints& joints() const { return way_.poses.back().joints; }
   bool is_empty() const { return !(payload_ > 0.0); }
   /// All so far is the way to the dig.
-  void is_approach() {
+  void end_approach() {
     for (WayPose& pose : way_.poses) pose.phase = DigPhase::approach;
   }
 
@@ -287,7 +287,7 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
     }
     const Holding holding = way.is_empty() ? Holding::nothing : Holding::opening;
     if (auto stop = way.go(DigPhase::approach, begin, holding)) return *stop;
-    way.is_approach();
+    way.end_approach();
   }
   way.add_dig(dig, load.payload_mass);
   if (options.whole_cycle) {

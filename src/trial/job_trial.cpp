@@ -14,8 +14,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 void count(const TrialStep& at, JobTrial& trial) {
   const bool finishes = at.step.what == JobAction::finish;
-  const bool digs = finishes || at.step.what == JobAction::dig;
-  trial.digs += digs ? 1 : 0;
+  trial.digs += at.step.digs() ? 1 : 0;
   trial.finishing += finishes ? 1 : 0;
   trial.moves += at.step.what == JobAction::move ? 1 : 0;
   trial.scans += at.done.report.scan ? 1 : 0;
@@ -23,7 +22,7 @@ void count(const TrialStep& at, JobTrial& trial) {
   trial.energy += at.done.energy;
   trial.time += at.done.time;
   trial.planning_time += at.planning_time;
-  if (!digs || !at.step.truck) return;
+  if (!at.step.digs() || !at.step.truck) return;
   trial.trucks[*at.step.truck] += at.done.payload_mass;
   trial.hauled += at.done.payload_mass;
 }

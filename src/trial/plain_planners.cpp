@@ -71,7 +71,7 @@ class PlainPlanner : public JobPlanner {
     const JobAction what = step_->what;
     step_.reset();
     if (what == JobAction::move) arrive();
-    if (what == JobAction::dig || what == JobAction::finish) {
+    if (digs(what)) {
       dumps_.loaded(report.payload_mass.value_or(0.0));
       must_scan_ = true;
     }
@@ -84,7 +84,7 @@ class PlainPlanner : public JobPlanner {
         lane.layer = std::max(least_layer, policy_.after_stall * lane.layer);
       }
     }
-    if (what == JobAction::dig || what == JobAction::finish) ++at_;
+    if (digs(what)) ++at_;
   }
 
  private:

@@ -48,7 +48,7 @@ struct JobEvent {
   CellPatch surface;  ///< of JobHistory::before after it [m]
   CellPatch seen_at;  ///< JobHistory::seen_at after it [s]
 
-  bool digs() const { return what == JobAction::dig || what == JobAction::finish; }
+  bool digs() const { return excavplan::digs(what); }
 };
 /// What step and report say of a step: nothing of the ground, and as its time what was foretold.
 JobEvent event_of(const JobStep& step, const StepReport& report);

@@ -31,6 +31,8 @@ enum class JobAction {
 };
 /// "dig", as in files.
 const char* name(JobAction action);
+/// Whether the bucket goes through the ground: JobAction::dig or JobAction::finish.
+bool digs(JobAction action);
 
 /// What a step is expected to lift and cost.
 struct ForetoldStep {
@@ -67,7 +69,7 @@ struct JobStep {
   std::vector<Warning> warnings;       ///< about this step
   std::string reason;                  ///< of a scan, a wait or a stop
 
-  bool digs() const { return what == JobAction::dig || what == JobAction::finish; }
+  bool digs() const { return excavplan::digs(what); }
   bool moves_front() const { return digs() || dumps_first; }
 };
 
