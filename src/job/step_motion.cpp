@@ -29,7 +29,7 @@ StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, co
     checked.blocked = stopped->message;
     return checked;
   }
-  const Trajectory& timed = std::get<Trajectory>(motion);
+  const auto& timed = std::get<Trajectory>(motion);
   if (!timed.points.empty()) {
     const TrajectoryPoint& last = timed.points.back();
     checked.rests_at << last.joints, last.swing.angle;

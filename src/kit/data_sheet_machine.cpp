@@ -280,6 +280,7 @@ FittedMachine machine_from_data_sheet(const NamedDataSheet& sheet,
   require(from.size() >= 2, "data sheet: machines to take proportions from",
           static_cast<double>(from.size()), "at least 2");
   std::vector<Proportioned> known;
+  known.reserve(from.size());
   for (const string& word : from) known.push_back(proportioned(word));
   Known all;
   for (const Proportioned& each : known) all.push_back(&each);

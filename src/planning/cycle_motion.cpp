@@ -39,7 +39,7 @@ JointAngles heavier(const FrontLoad& load, const FrontJoints& from, const FrontJ
 /// The full bucket over its dump.
 JointAngles over_dump(const Machine& machine, const JointAngles& clear, double height,
                       const std::optional<double>& radius) {
-  const JointAngles straight = raised(machine, clear, height);
+  JointAngles straight = raised(machine, clear, height);
   if (!radius) return straight;
   const Eigen::Vector2d pin = link_positions(machine, clear).bucket_pin;
   BucketPose bucket = forward_kinematics(machine, clear);

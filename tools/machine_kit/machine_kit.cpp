@@ -120,9 +120,10 @@ FittedMachine told_machine(const Inputs& inputs) {
 
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
-  const auto [file, fitted] = told_machine(inputs);
+  const FittedMachine told = told_machine(inputs);
+  const MachineFile& file = told.file;
   Outcome outcome = examined(file, inputs.folder());
-  if (inputs.data_sheet) outcome.json["fitted"] = fitted_json(fitted);
+  if (inputs.data_sheet) outcome.json["fitted"] = fitted_json(told.numbers);
   for (Warning& each : goal_warnings(inputs.goal, {file.machine})) {
     outcome.warnings.push_back(std::move(each));
   }
