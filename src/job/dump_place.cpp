@@ -21,8 +21,8 @@ constexpr double turn_step = 0.05;     // [rad]
 constexpr double most_turn = 2.6;      // [rad]
 constexpr double drop = 0.3;           // from the open bucket to the heap [m]
 constexpr double height_price = 0.15;  // of a metre, as a swing [rad/m]
-constexpr int places_around = 16;      // of a heap that must lie in the area
 constexpr double edge_of_cut = 0.6;    // soil keeps so far from the design [m]
+constexpr double off_keep_out = 0.3;   // likewise from keep-outs, as heaps run and no dump is exact
 
 /// Height of the cone of a bucket of soil.
 double heap_height(const JobSettings& settings) {
@@ -31,16 +31,22 @@ double heap_height(const JobSettings& settings) {
   return std::cbrt(3.0 * volume * repose * repose / pi);
 }
 
-/// All that is within so far of a place is part of the dump areas.
+/// A heap of this radius lies in the dump areas, and runs neither into the cut nor to what no soil
+/// may touch.
 bool fits(const JobMap& map, const Vector2d& place, double radius) {
-  for (int i = 0; i < places_around; ++i) {
-    const double turn = 2.0 * pi * i / places_around;
-    const auto at = cell_at(map.target, place.x() + radius * std::cos(turn),
-                            place.y() + radius * std::sin(turn));
-    if (!at || !map.dump(at->row, at->col)) return false;
-    const auto beyond = cell_at(map.target, place.x() + (radius + edge_of_cut) * std::cos(turn),
-                                place.y() + (radius + edge_of_cut) * std::sin(turn));
-    if (beyond && !std::isnan(map.target.z(beyond->row, beyond->col))) return false;
+  const double cell = map.target.cell_size;
+  const double around = radius + std::max(edge_of_cut, off_keep_out);
+  for (double x = -around; x <= around; x += cell) {
+    for (double y = -around; y <= around; y += cell) {
+      const double distance = std::hypot(x, y);
+      if (distance > around) continue;
+      const auto at = cell_at(map.target, place.x() + x, place.y() + y);
+      if (distance <= radius && (!at || !map.dump(at->row, at->col))) return false;
+      if (!at) continue;
+      if (distance <= radius + off_keep_out && map.untouched(at->row, at->col)) return false;
+      if (distance <= radius + edge_of_cut && !std::isnan(map.target.z(at->row, at->col)))
+        return false;
+    }
   }
   return true;
 }

@@ -115,6 +115,8 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
     for_each_inside(obstacle.polygon, ground,
                     [&](Cell at) { map.forbidden(at.row, at.col) = infinity; });
   }
+  map.untouched = map.forbidden == infinity;
+  map.dump = map.dump && !map.untouched;
   return map;
 }
 

@@ -19,6 +19,7 @@ struct JobMap {
   HeightMap target;           ///< design height; NaN outside of its footprint [m]
   Mask counts;                ///< whether the cell counts for the deviation (CutOptions)
   Mask dump;                  ///< whether soil may be laid there
+  Mask untouched;             ///< a keep-out of any depth, or an obstacle: no soil may fall there
   Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none
 };
 

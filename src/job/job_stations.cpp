@@ -131,8 +131,7 @@ bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& 
   });
   if (!free) return false;
   for_each_under({frame, station, machine}, target, [&](const auto& cell) {
-    free &= cell && !map.dump(cell->row, cell->col) &&
-            map.forbidden(cell->row, cell->col) == -std::numeric_limits<double>::infinity();
+    free &= cell && !map.dump(cell->row, cell->col) && !map.untouched(cell->row, cell->col);
   });
   return free;
 }

@@ -52,6 +52,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
       target_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), nan)),
       dump_(Mask::Constant(surface_.z.rows(), surface_.z.cols(), false)),
       counts_(dump_),
+      untouched_(dump_),
       forbidden_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), -infinity)) {
   const PlanFrame frame(line.origin, line.heading);
   for_each_cell(target_, [&](Cell at) {
@@ -61,6 +62,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
     target_(at.row, at.col) = job.target.z(cell->row, cell->col) - line.z;
     dump_(at.row, at.col) = job.dump(cell->row, cell->col);
     counts_(at.row, at.col) = job.counts(cell->row, cell->col);
+    untouched_(at.row, at.col) = job.untouched(cell->row, cell->col);
     forbidden_(at.row, at.col) = job.forbidden(cell->row, cell->col) - line.z;
   });
   look_under_bucket(bucket_width);
@@ -133,6 +135,7 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
       const double bank = ground_.terrain().bank.z(cell.row, cell.col);
       change.too_deep += area * std::max(0.0, bank - patch.bank(at.row, at.col));
       if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
+      if (untouched_(cell.row, cell.col)) change.touched += area * std::abs(after - before);
       return;
     }
     const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));

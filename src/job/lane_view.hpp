@@ -28,6 +28,7 @@ struct ShapeChange {
   double at_end = 0.0;    ///< of that, at the end of the work [m^3]
   double too_deep = 0.0;  ///< newly below it, or beside it below the ground [m^3]
   double spilled = 0.0;   ///< risen beside the design and the dump areas [m^3]
+  double touched = 0.0;   ///< changed where nothing may (JobMap::untouched) [m^3]
 };
 
 /// What counts in a change.
@@ -69,6 +70,7 @@ class LaneView {
   Eigen::ArrayXXd target_;  ///< in the view, NaN beside the design
   Mask dump_;
   Mask counts_;
+  Mask untouched_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
   Eigen::ArrayXd floor_, ground_at_, top_;

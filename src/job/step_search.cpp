@@ -23,10 +23,11 @@ using Eigen::Index;
 constexpr double room_beyond = 2.0;  // of a view beyond the work, for the bucket and its pile [m]
 constexpr double room_beside = 2.0;  // of a view beside the line [m]
 constexpr double start_step = 0.4;   // between places where digs may begin [m]
-constexpr double least_excess = 0.015;  // of soil that is worth a dig [m]
-constexpr double least_ridge = 0.004;   // likewise of a finishing pass: it may lie at a wall alone
-constexpr double too_deep_price = 4.0;  // of soil taken below the design, over that of the design
-constexpr double spill_price = 2.0;     // of soil spilled beside design and dump areas, likewise
+constexpr double least_excess = 0.015;   // of soil that is worth a dig [m]
+constexpr double least_ridge = 0.004;    // likewise of a finishing pass: it may lie at a wall alone
+constexpr double too_deep_price = 4.0;   // of soil taken below the design, over that of the design
+constexpr double spill_price = 2.0;      // of soil spilled beside design and dump areas, likewise
+constexpr double most_touched = 0.0005;  // by a dig, of what no soil may touch [m^3]
 constexpr std::size_t most_confirmed = 8;  // digs whose ground is looked at
 constexpr double level_from = 0.2;  // before the start of a dig, the ground whose level counts [m]
 constexpr double level_to = 1.2;    // likewise [m]
@@ -378,6 +379,7 @@ class StepSearch {
     step.change = view.change(
         found->result.patch, {task_.slack, task_.settings.design.tolerance, task_.far - wall_from});
     const double gain = gain_of(step, aim);
+    if (step.change.touched > most_touched) return std::nullopt;
     if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;
     const auto in_hard =
         dig_of_path(machine_, hard_, ground, candidate.path, cycle_of(candidate.path));
