@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+#include "base/statistics.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -14,11 +17,13 @@ constexpr double memory = 0.1;       // of the scatter, of each new reading
 constexpr double drift = 0.02;       // of the two ratios from dig to dig, as the soil changes
 constexpr double least_share = 0.1;  // of the energy of a dig that tells of the strength
 constexpr double strength_reading =
-    0.3;  // sd of ln of the energy, as the simulator and the path are off
-constexpr double stall_surprise = 2.0;  // of a stall: so many deviations stronger than expected
-constexpr double least_doubt = 0.25;    // about ln of the strength, from place to place
-constexpr double least_fill = 0.3;      // of a bucket that teaches anything
-constexpr double least_energy = 0.1;    // of the dig in that of its cycle, to tell its own
+    0.3;                           // sd of ln of the energy, as the simulator and the path are off
+constexpr double stall_sd = 0.25;  // of ln of the strength at which a dig stalls, likewise
+constexpr double least_likelihood = 1e-6;  // of a stall or none
+constexpr double least_share_left = 0.05;  // of a variance after one
+constexpr double least_doubt = 0.25;       // about ln of the strength, from place to place
+constexpr double least_fill = 0.3;         // of a bucket that teaches anything
+constexpr double least_energy = 0.1;       // of the dig in that of its cycle, to tell its own
 
 void learn_ratio(LearntNumber& ratio, double& scatter, double reading) {
   ratio.variance += drift * drift;
@@ -39,6 +44,18 @@ void LearntNumber::learn(double reading, double reading_variance) {
   const double gain = variance / (variance + reading_variance);
   mean += gain * (reading - mean);
   variance *= 1.0 - gain;
+}
+
+void LearntNumber::learn_bound(double bound, bool is_above, double bound_variance) {
+  const double spread = std::sqrt(variance + bound_variance);
+  const double sign = is_above ? 1.0 : -1.0;
+  const double z = sign * (mean - bound) / spread;
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * pi);
+  const double ratio = density / std::max(normal_cdf(z), least_likelihood);
+  const double known = variance;
+  mean += sign * known / spread * ratio;
+  variance -= known * known / (spread * spread) * ratio * (z + ratio);
+  variance = std::max(variance, least_share_left * known);
 }
 
 void ScanDatum::learn(const Alignment& scan) {
@@ -64,12 +81,11 @@ ForetoldStep JobLearning::foretell(const PlannedDig& dig) const {
   return foretold;
 }
 
-void JobLearning::learn(const PlannedDig& dig, double strength_share, const StepReport& report) {
-  if (report.stalled) {
-    const double sd = strength.sd();
-    strength.learn(strength.mean + stall_surprise * sd, sd * sd);
-    return;
-  }
+void JobLearning::learn(const PlannedDig& dig, const StrengthSigns& signs,
+                        const StepReport& report) {
+  if (signs.stalls_at > 0.0)
+    strength.learn_bound(std::log(signs.stalls_at), report.stalled, stall_sd * stall_sd);
+  if (report.stalled) return;
   if (dig.fill < least_fill) return;
   if (report.payload_mass && *report.payload_mass > 0.0) {
     learn_ratio(payload, payload_scatter, std::log(*report.payload_mass / dig.payload_mass));
@@ -79,16 +95,16 @@ void JobLearning::learn(const PlannedDig& dig, double strength_share, const Step
       *report.joint_work > rest) {
     const double ratio = std::log((*report.joint_work - rest) / dig.energy);
     learn_ratio(energy, energy_scatter, ratio);
-    if (strength_share > least_share) {
-      const double sd = strength_reading / strength_share;
-      strength.learn(strength.mean + ratio / strength_share, sd * sd);
+    if (signs.energy_share > least_share) {
+      const double sd = strength_reading / signs.energy_share;
+      strength.learn(strength.mean + ratio / signs.energy_share, sd * sd);
     }
   }
 }
 
-double JobLearning::strength_factor() const { return std::exp(strength.mean); }
-double JobLearning::hard_factor() const {
-  return std::exp(strength.mean + std::max(strength.sd(), least_doubt));
+double JobLearning::strength_factor(int deviations) const {
+  return std::exp(strength.mean + deviations * std::max(strength.sd(), least_doubt));
 }
+double JobLearning::hard_factor() const { return strength_factor(1); }
 
 }  // namespace excavplan

@@ -18,6 +18,9 @@ struct LearntNumber {
   double variance = 0.0;
 
   void learn(double reading, double reading_variance);
+  /// That it lies above a bound that itself has a normal error, or below (by moments of the
+  /// posterior of a probit: Rasmussen and Williams, Gaussian Processes, 2006, 3.9).
+  void learn_bound(double bound, bool is_above, double bound_variance);
   double sd() const;
 };
 
@@ -32,6 +35,12 @@ struct ScanDatum {
   Eigen::Vector3d plane() const { return -sum / scans; }
 };
 
+/// What a planned dig will tell of the soil's strength.
+struct StrengthSigns {
+  double energy_share = 0.0;  ///< of ln of its energy in ln of the strength [-]
+  double stalls_at = 0.0;     ///< least factor on the strength at which it stalls [-]; 0: not known
+};
+
 /// Learnt from step to step; deviations before any are ours.
 struct JobLearning {
   ScanDatum datum;
@@ -41,14 +50,20 @@ struct JobLearning {
   LearntNumber energy = {0.0, 0.25 * 0.25};      ///< ln(energy of the dig / simulated)
   double payload_scatter = 0.05 * 0.05;          ///< variance from dig to dig of that logarithm
   double energy_scatter = 0.08 * 0.08;           ///< likewise
-  LearntNumber strength = {0.0, 0.35 * 0.35};    ///< ln of the factor on the soil's strength
+  /// ln of the factor on the soil's strength: of soil of one density, and of the density, which is
+  /// told to 25 % and of which 100 % multiply the cohesion of loam or clay by e^2.2.
+  LearntNumber strength = {0.0, 0.35 * 0.35 + 0.54 * 0.54};
 
   ForetoldStep foretell(const PlannedDig& dig) const;
-  /// @param strength_share  StepDig::strength_share
-  void learn(const PlannedDig& dig, double strength_share, const StepReport& report);
+  void learn(const PlannedDig& dig, const StrengthSigns& signs, const StepReport& report);
+  /// To other ground.
+  void move() { strength.variance += place_variance; }
 
-  double strength_factor() const;  ///< that is expected
-  double hard_factor() const;      ///< that a dig should not stall at
+  static constexpr double place_variance = 0.15 * 0.15;  ///< of strength, from place to place
+
+  /// So many deviations above what is expected.
+  double strength_factor(int deviations = 0) const;
+  double hard_factor() const;  ///< that a dig should not stall at
 };
 
 }  // namespace excavplan

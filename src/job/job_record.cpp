@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "excavplan job";
-constexpr int version = 3;
+constexpr int version = 4;
 constexpr int numbers_of_pose = 6;
 
 constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,
@@ -217,7 +217,8 @@ template <typename Record, typename Visit>
 void for_each_number(Record& record, Visit visit) {
   visit("deepest_cut_m", record.deepest_cut);
   visit("truck_load_kg", record.truck_load);
-  visit("strength_share", record.strength_share);
+  visit("strength_share", record.signs.energy_share);
+  visit("stalls_at", record.signs.stalls_at);
   visit("first_volume_m3", record.progress.design_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
 }

@@ -27,7 +27,7 @@ struct JobRecord {
   long long last_step = 0;            ///< number of the step that was made last
   std::optional<JobStep> present;     ///< that is not done yet
   std::optional<PlannedDig> planned;  ///< of it, if it is a dig
-  double strength_share = 0.0;        ///< likewise, JobLearning
+  StrengthSigns signs;                ///< likewise
   std::vector<JobStep> unseen;        ///< digs since the last scan
   long long site_updates = 0;         ///< scans that the site had taken in
   double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall

@@ -34,9 +34,9 @@ constexpr double middle = -0.05;        // of what passes leave, over the design
 constexpr double most_allowance = 0.4;  // of passes to that end, likewise
 constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
-constexpr int most_passes = 12;              // along the floor from one station
-constexpr int most_fruitless = 4;            // passes in succession that took nothing off
-constexpr int most_fruitless_digs = 5;       // likewise of digs for volume
+constexpr int most_passes = 16;              // along the floor from one station
+constexpr int most_fruitless = 6;            // passes in succession that took nothing off
+constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr double off_wall = 0.05;            // of passes beside it [m]
 constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
@@ -48,9 +48,10 @@ constexpr double most_heaps = 0.006;         // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
 constexpr double least_seen = 0.99;         // of a finished design
 constexpr double well_seen = 0.999;         // of it, so that no more is looked for
-constexpr double after_stall = 0.7;         // of the depth of a cut
-constexpr double after_success = 1.1;       // likewise
-constexpr double shallowest_cut = 0.06;     // [m]
+constexpr int most_softer = 2;           // deviations of the strength below its mean that are tried
+constexpr double after_stall = 0.7;      // of the depth of a cut
+constexpr double after_success = 1.1;    // likewise
+constexpr double shallowest_cut = 0.06;  // [m]
 
 /// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
 /// the walls: one that stands too far inside would stop them.
@@ -264,8 +265,13 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   BasePose straight = record.base;
   straight.heading = frame_at(stations[record.station]).heading;
   straight.z += record.learning.height_bias.mean;
-  const StepTask task = task_of(finishing, *dump, straight);
+  StepTask task = task_of(finishing, *dump, straight);
   auto dig = best_dig(task);
+  for (int softer = 1; !dig && !finishing && softer <= most_softer; ++softer) {
+    task.hard_factor = task.strength_factor;
+    task.strength_factor = record.learning.strength_factor(-softer);
+    dig = best_dig(task);
+  }
   if (!dig) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = wrapped(straight.heading - record.base.heading);
@@ -285,7 +291,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
     (void)check_motion(step);
   }
   record.planned = dig->dig;
-  record.strength_share = dig->strength_share;
+  record.signs = dig->signs;
   return step;
 }
 
@@ -490,7 +496,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
 }
 
 void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
-  record.learning.learn(*record.planned, record.strength_share, report);
+  record.learning.learn(*record.planned, record.signs, report);
   JobProgress& progress = record.progress;
   const bool finishing = step.what == JobAction::finish;
   ++(finishing ? progress.finishing_passes : progress.digs);
@@ -542,6 +548,7 @@ void SiteJob::State::end_step(const StepReport& report) {
   if (step.what == JobAction::move) {
     record.base = report.base.value_or(step.base);
     record.has_arrived = true;
+    record.learning.move();
     ++record.progress.moves;
   }
   if (report.scan) {

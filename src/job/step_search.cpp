@@ -40,6 +40,7 @@ constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over grou
 constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
 constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
+constexpr double least_in_hard = 0.07;  // likewise in soil that lets no bucket fill
 constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
 constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
 constexpr double standing = 0.05;       // of a bank in a lane over the mean ground of the lane [m]
@@ -60,6 +61,17 @@ struct Attitude {
 const std::array<Attitude, 4> attitudes = {{{0.25, true}, {0.4, true}, {0.6, true}, {0.8, false}}};
 const std::array<Attitude, 5> wall_attitudes = {
     {{1.3, false}, {1.2, false}, {1.1, false}, {1.0, false}, {0.8, false}}};
+// Where a flat cut would stall or lift the front, the bucket bites: a short steep penetration, and
+// then its cylinder, the strongest, curls it through the soil.
+const std::array<double, 4> bite_angles = {1.0, 1.2, 1.3, 1.4};  // [rad]
+const std::array<double, 2> bite_depths = {0.04, 0.08};          // of its penetration [m]
+const std::array<double, 3> bite_drags = {0.0, 0.4, 0.8};        // [m]
+constexpr double least_bitten = 0.06;                            // of soil over the floor there [m]
+constexpr double least_strength = 0.2;   // of soil, over that of its kind, that is looked at
+constexpr double most_strength = 20.0;   // likewise
+constexpr int halvings = 6;              // of these bounds, by their logarithm
+constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
+constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
 const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
@@ -124,12 +136,19 @@ class StepSearch {
       if (auto dig = best_at_wall()) return dig;
     }
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) lay_out(lane);
-    return best(task_.finishing ? Aim::shape : Aim::volume);
+    if (task_.finishing) return best(Aim::shape);
+    auto dig = best(Aim::volume);
+    if (dig && !dig->may_stall && dig->dig.fill > poor_fill) return dig;
+    candidates_.clear();
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) lay_out_in_hard(lane);
+    auto bite = best(Aim::hard);
+    return bite && (!dig || bite->worth > dig->worth) ? bite : dig;
   }
 
  private:
-  /// What a dig is for: the wall at the end of the work, volume, or the shape of the floor.
-  enum class Aim { wall, volume, shape };
+  /// What a dig is for: the wall at the end of the work, volume, any volume where the soil is hard,
+  /// or the shape of the floor.
+  enum class Aim { wall, volume, hard, shape };
 
   /// As steeply as the machine surely can; else, if it may risk a stall, what is worth most.
   std::optional<StepDig> best_at_wall() {
@@ -172,8 +191,26 @@ class StepSearch {
       }
       next += count;
     }
-    if (best) add_approach(lane, best->path);
+    if (!best) return best;
+    best->signs.stalls_at = stalls_at(lane, best->path);
+    add_approach(lane, best->path);
     return best;
+  }
+
+  /// The least factor on the soil's strength at which a dig stalls, within the bounds.
+  double stalls_at(std::size_t lane, const DigPath& path) const {
+    const Terrain& ground = lanes_[lane].view.ground().terrain();
+    double low = std::log(least_strength);
+    double high = std::log(most_strength);
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      const HeightMapSimulator simulator(machine_,
+                                         with_strength(task_.settings.site.soil, std::exp(middle)),
+                                         task_.density_percent);
+      const auto dig = dig_of_path(machine_, simulator, ground, path, cycle_of(path));
+      (std::holds_alternative<PlannedDig>(dig) ? low : high) = middle;
+    }
+    return std::exp(0.5 * (low + high));
   }
 
   Rectangle extent() const {
@@ -201,6 +238,28 @@ class StepSearch {
     for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
       if (is_worth_a_dig(lanes_[lane], start))
         lay_out_layers(lane, start, attitudes, rules_in(lane));
+    }
+  }
+
+  /// Bites, and the thinnest layers.
+  void lay_out_in_hard(std::size_t lane) {
+    const Lane& at = lanes_[lane];
+    DigPathOptions rules = rules_in(lane);
+    for (double start = task_.far; start > task_.near; start -= start_step) {
+      const double ground = at.ground(start);
+      if (!(ground - at.floor(start) > least_bitten)) continue;
+      for (const double angle : bite_angles) {
+        for (const double depth : bite_depths) {
+          for (const double drag : bite_drags)
+            add(lane, {angle, depth / std::sin(angle), drag}, start, rules);
+        }
+      }
+      for (const Attitude& attitude : attitudes) {
+        rules.drag_keeps_angle = attitude.is_kept;
+        lay_out_layer(lane, start, {attitude.angle, thinnest_layer, ground - thinnest_layer},
+                      rules);
+      }
+      rules.drag_keeps_angle = false;
     }
   }
 
@@ -387,8 +446,8 @@ class StepSearch {
     step.may_stall = hard == nullptr;
     step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
     if (hard != nullptr) {
-      step.strength_share = std::log(hard->energy / step.dig.energy) /
-                            std::log(task_.hard_factor / task_.strength_factor);
+      step.signs.energy_share = std::log(hard->energy / step.dig.energy) /
+                                std::log(task_.hard_factor / task_.strength_factor);
     }
     return step;
   }
@@ -399,7 +458,7 @@ class StepSearch {
     const double deep_price = aim == Aim::shape ? 1.0 : too_deep_price;
     const double spoiled = deep_price * change.too_deep + spill_price * change.spilled;
     if (aim == Aim::wall) return change.gained + wall_worth * change.at_end - spoiled;
-    if (aim == Aim::volume) return change.gained - spoiled;
+    if (aim != Aim::shape) return change.gained - spoiled;
     return std::max(change.shaped, cleared_worth * change.cleared) - spoiled;
   }
 
@@ -409,6 +468,7 @@ class StepSearch {
     if (aim == Aim::shape)
       return change.finished > least_finished || change.cleared > least_cleared;
     if (aim == Aim::volume) return change.gained > least_gain * capacity_;
+    if (aim == Aim::hard) return change.gained > least_in_hard * capacity_;
     if (task_.finishing) return change.at_end > least_lifted;
     return change.gained + change.at_end > least_at_wall * capacity_;
   }

@@ -9,6 +9,7 @@
 #include <excavplan/planning/planned_dig.hpp>
 
 #include "job/dump_place.hpp"
+#include "job/job_learning.hpp"
 #include "job/lane_view.hpp"
 
 /// @file
@@ -46,9 +47,9 @@ struct StepDig {
   DigPath path;       ///< in the frame of the lane, with its approach
   PlannedDig dig;     ///< with its cycle
   ShapeChange change;
-  double strength_share = 0.0;  ///< of ln of the energy in ln of the soil's strength [-]
-  bool may_stall = false;       ///< if the soil is as strong as StepTask::hard_factor
-  double worth = 0.0;           ///< volume of the design per cost of the cycle [m^3/J]
+  StrengthSigns signs;
+  bool may_stall = false;  ///< if the soil is as strong as StepTask::hard_factor
+  double worth = 0.0;      ///< volume of the design per cost of the cycle [m^3/J]
 };
 
 /// @return nothing if no dig gains anything
