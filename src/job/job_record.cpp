@@ -219,6 +219,7 @@ void for_each_number(Record& record, Visit visit) {
   visit("truck_load_kg", record.truck_load);
   visit("strength_share", record.signs.energy_share);
   visit("stalls_at", record.signs.stalls_at);
+  visit("seen_before_look", record.seen_before_look);
   visit("first_volume_m3", record.progress.design_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
 }

@@ -38,6 +38,7 @@ struct JobRecord {
   int fruitless = 0;                  ///< finishing passes in succession that lifted little
   std::vector<DigStart> barren;   ///< digs from this station that lifted much less than foretold
   std::vector<SensorLook> looks;  ///< of the last scan that told its sensor
+  double seen_before_look = 0.0;  ///< share of the design, when it last went to look
   std::optional<CarriedLoad> carried;
   FrontJoints rests_at = FrontJoints::Zero();  ///< of the front after the present step [rad]
   double truck_load = 0.0;                     ///< in the present truck [kg]

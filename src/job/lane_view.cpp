@@ -144,7 +144,8 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     // What a pass pushes aside is for the next one.
     const bool is_under = cell.row >= first_row_ && cell.row < end_row_;
     if (is_under && counts_(cell.row, cell.col)) {
-      change.cleared += gained;
+      const double level = target + slack;
+      change.cleared += area * (std::max(0.0, before - level) - std::max(0.0, after - level));
       const auto is_off = [&](double z) { return std::abs(z - target) > rules.tolerance; };
       change.finished += area * (is_off(before) - is_off(after));
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -

@@ -29,7 +29,7 @@ namespace {
 // Numbers of our own choice.
 constexpr std::size_t most_unseen = 5;         // digs between two scans
 constexpr std::size_t most_unseen_passes = 2;  // likewise of passes
-constexpr double allowance = 0.15;      // over the design, in tolerances: what is too deep stays so
+constexpr double allowance = 0.5;       // over the design, in tolerances: what is too deep stays so
 constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
 constexpr double most_allowance = 0.4;  // of passes to that end, likewise
 constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
@@ -48,10 +48,11 @@ constexpr double most_heaps = 0.006;         // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
 constexpr double least_seen = 0.99;         // of a finished design
 constexpr double well_seen = 0.999;         // of it, so that no more is looked for
-constexpr int most_softer = 2;           // deviations of the strength below its mean that are tried
-constexpr double after_stall = 0.7;      // of the depth of a cut
-constexpr double after_success = 1.1;    // likewise
-constexpr double shallowest_cut = 0.06;  // [m]
+constexpr int most_softer = 4;  // deviations of the strength below its mean that are tried
+constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
+constexpr double after_stall = 0.7;          // of the depth of a cut
+constexpr double after_success = 1.1;        // likewise
+constexpr double shallowest_cut = 0.06;      // [m]
 
 /// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
 /// the walls: one that stands too far inside would stop them.
@@ -455,8 +456,12 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
 JobStep SiteJob::State::leave() {
   const JobProgress now = progress();
   learn_floor();
+  const bool looked_in_vain = stations[record.station].is_lookout() &&
+                              now.seen - record.seen_before_look < least_newly_seen;
+  record.seen_before_look = now.seen;
   while (!(now.is_finished && now.seen >= well_seen) && record.station + 1 < stations.size()) {
     ++record.station;
+    if (looked_in_vain && stations[record.station].is_lookout()) continue;
     const auto place = next_place(now);
     if (!place) continue;
     record.passes_here = 0;

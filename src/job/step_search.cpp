@@ -36,6 +36,8 @@ const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
+constexpr double shortest_pass = 0.6;  // [m]
+constexpr double in_shape_over = 0.5;  // so far the ground is in shape after it [m]
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
 constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
@@ -280,8 +282,21 @@ class StepSearch {
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
+        const double shorter = drag - (in_shape_before(lanes_[lane], start) - task_.near);
+        if (shorter > shortest_drag && shorter < drag)
+          add(lane, {angle, 1.0, shorter}, start, rules);
       }
     }
+  }
+
+  /// Where the ground before a start comes into shape for a while: to cut on would only roughen it.
+  double in_shape_before(const Lane& lane, double start) const {
+    for (double x = start - shortest_pass; x > task_.near; x -= lane.view.surface().cell_size) {
+      const double left =
+          lane.mean_over(x - in_shape_over, x, [&](Index col) { return lane.excess(col); });
+      if (left < task_.slack) return x;
+    }
+    return task_.near;
   }
 
   /// Layers of all depths from there.

@@ -9,12 +9,14 @@
 #include <excavplan/trial/job_score.hpp>
 
 #include "base/angles.hpp"
+#include "base/statistics.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
 #include "job/lane_view.hpp"
 #include "job/lookout.hpp"
+#include "job/step_search.hpp"
 #include "job/trench_job.hpp"
 #include "support/errors.hpp"
 
@@ -278,6 +280,82 @@ TEST(DumpPlace, IsInTheAreaAndAwayFromTheTrench) {
   EXPECT_NEAR(std::atan2(from.y(), from.x()), place->swing, 1e-9);
   job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(20.0, 1.5, 24.0, 6.0)}};
   EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
+}
+
+TEST(DumpPlace, NoSoilRunsIntoAKeepOut) {
+  HandMadeJob job;
+  const SitePolygon manhole = box(3.2, 1.8, 3.5, 2.1);  // small, where the nearest heap would lie
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  const auto distance = [&](const DumpPlace& dump) {
+    return (dump.place.head<2>() - Eigen::Vector2d(3.35, 1.95)).norm();
+  };
+  job.settings.design.start = base;
+  const auto before = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(before);
+  job.settings.design.keep_out = {{"manhole", manhole, {}}};
+  const auto place = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(place);
+  EXPECT_GT(distance(*place), 0.9 + 0.15);  // the radius of a heaped bucket of loam at rest
+  job.settings.design.keep_out = {{"cable", manhole, 0.8}};  // soil may lie over a buried one
+  const auto over = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(over);
+  EXPECT_EQ(over->place, before->place);
+}
+
+TEST(LearntNumber, ABoundMovesItByTheMomentsOfItsPosterior) {
+  // Against the posterior summed on a grid.
+  const double variance = 0.4, error = 0.06, bound = 0.5;
+  for (const bool is_above : {true, false}) {
+    double sum = 0.0, first = 0.0, second = 0.0;
+    for (double x = -5.0; x < 5.0; x += 1e-3) {
+      const double below = normal_cdf((x - bound) / std::sqrt(error));
+      const double weight = std::exp(-0.5 * x * x / variance) * (is_above ? below : 1.0 - below);
+      sum += weight;
+      first += weight * x;
+      second += weight * x * x;
+    }
+    LearntNumber number = {0.0, variance};
+    number.learn_bound(bound, is_above, error);
+    EXPECT_NEAR(number.mean, first / sum, 1e-6) << is_above;
+    EXPECT_NEAR(number.variance, second / sum - first * first / (sum * sum), 1e-6) << is_above;
+  }
+}
+
+TEST(LearntNumber, ManyStallsDoNotFreezeIt) {
+  LearntNumber number = {0.0, 0.4};
+  for (int i = 0; i < 6; ++i) number.learn_bound(number.mean + number.sd(), true, 0.06);
+  EXPECT_GT(number.mean, 1.5);
+  EXPECT_GT(number.sd(), 0.05);
+}
+
+/// The dig that a machine finds in a trench of soil so much stronger than its kind.
+std::optional<StepDig> dig_in_soil(const HandMadeJob& job, double strength) {
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  const JobMap map = job.map();
+  const std::vector<DigStart> barren;
+  StepTask task{job.settings, map, job.ground, base, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, barren};
+  task.lanes = {-0.11, 0.11};
+  task.near = 2.95;
+  task.far = 6.0;
+  task.strength_factor = strength;
+  task.hard_factor = 1.3 * strength;
+  task.slack = 0.015;
+  return best_dig(task);
+}
+
+TEST(StepSearch, BitesWhereNoFlatCutIsStrongEnough) {
+  const HandMadeJob job;
+  const auto soft = dig_in_soil(job, 0.5);
+  ASSERT_TRUE(soft);
+  EXPECT_LT(soft->path.parameters.penetration_angle, 0.9);
+  EXPECT_GT(soft->dig.fill, 0.8);
+  const auto hard = dig_in_soil(job, 4.0);
+  ASSERT_TRUE(hard);
+  EXPECT_GE(hard->path.parameters.penetration_angle, 1.0);
+  EXPECT_GT(hard->path.overcut, 0.05);  // its curl goes below the penetration
+  EXPECT_GT(hard->dig.payload_mass, 60.0);
+  EXPECT_GT(hard->signs.stalls_at, 4.0);
+  EXPECT_LT(hard->signs.stalls_at, 20.0);
 }
 
 TEST(DumpPlace, ATruckIsLoadedFromAboveItsBed) {
