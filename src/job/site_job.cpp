@@ -14,6 +14,7 @@
 #include "base/check.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "job/clear_stations.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_ground.hpp"
 #include "job/job_log.hpp"
@@ -65,6 +66,13 @@ std::vector<double> lanes_of(const JobStation& station, bool finishing) {
   }
   if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
   return all;
+}
+
+/// Whether all are dug from one line.
+bool is_one_group(const std::vector<JobStation>& stations) {
+  return std::all_of(stations.begin(), stations.end(), [&](const JobStation& each) {
+    return each.beside == stations.front().beside;
+  });
 }
 
 /// A scan that tells the ground alone.
@@ -137,6 +145,8 @@ struct SiteJob::State {
     design = map.target.z;
     frame = frame_of(settings, map);
     stations = stations_of(frame, settings);
+    if (is_one_group(stations))
+      stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
     const JobStation last = stations.back();
     for (JobStation& beyond : stations_beyond(frame, settings)) {
       if (!frame.is_battered && can_dig_from(beyond)) stations.push_back(std::move(beyond));

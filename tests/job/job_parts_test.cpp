@@ -10,6 +10,7 @@
 
 #include "base/angles.hpp"
 #include "base/statistics.hpp"
+#include "job/clear_stations.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
@@ -141,6 +142,52 @@ TEST(JobStations, FromBeyondTheFarEndIsTheNearOne) {
       1e-9);
   const WorkRange range = work_range(back, job.settings.site.machine, beyond.front().along);
   EXPECT_NEAR(at.x() - range.near, frame.far, 0.05);
+}
+
+TEST(JobStations, StandWhereTheTailTurnsClearOfAPole) {
+  HandMadeJob job;
+  job.settings.design.start = BasePose{-4.0, 0.0, 0.0, 0.0};
+  const JobFrame frame = job.frame();
+  const Machine& machine = job.settings.site.machine;
+  const auto usual = stations_of(frame, job.settings);
+  const Eigen::Vector2d behind = frame.place(usual[1].along - 1.0, -1.7);  // soil goes to the left
+  job.settings.design.obstacles = {
+      {"pole", box(behind.x() - 0.15, behind.y() - 0.15, behind.x() + 0.15, behind.y() + 0.15),
+       6.0}};
+  const JobMap map = job.map();
+  const auto turn = [&](const JobStation& station) {
+    const BasePose base = base_at(frame, station, job.ground, machine);
+    const auto dump = dump_place(job.settings, map, job.ground, base);
+    return dump && turns_clear(job.settings, base, dump->swing);
+  };
+  EXPECT_FALSE(turn(usual[1]));
+  const auto clear = clear_of_obstacles(usual, frame, job.settings, map, job.ground);
+  ASSERT_GE(clear.size(), usual.size());
+  double dug_to = frame.far;
+  for (const JobStation& station : clear) {
+    EXPECT_TRUE(turn(station)) << station.along;
+    const WorkRange range = work_range(frame, machine, station.along);
+    EXPECT_GE(station.along + range.far, dug_to - 0.15) << "a gap at " << station.along;
+    dug_to = station.along + range.near;
+  }
+  EXPECT_LT(dug_to, frame.near + 0.1);
+  job.settings.design.obstacles.clear();
+  const auto same = clear_of_obstacles(usual, frame, job.settings, map, job.ground);
+  for (std::size_t i = 0; i < usual.size(); ++i) EXPECT_EQ(same[i].along, usual[i].along);
+}
+
+TEST(JobStations, TheTailSweepsBehindOnTheSideAwayFromTheSwing) {
+  HandMadeJob job;
+  const auto clear_of = [&](double x, double y, double swing) {
+    job.settings.design.obstacles = {{"pole", box(x, y, x + 0.1, y + 0.1), 6.0}};
+    return turns_clear(job.settings, {0.0, 0.0, 0.0, 0.0}, swing);
+  };
+  EXPECT_FALSE(clear_of(-1.5, -1.2, 1.2));
+  EXPECT_TRUE(clear_of(-1.0, 1.7, 1.2));
+  EXPECT_FALSE(clear_of(-1.0, 1.7, -1.2));
+  EXPECT_TRUE(clear_of(1.0, 1.7, -0.5));
+  EXPECT_FALSE(clear_of(-1.9, 0.0, 0.0));
+  EXPECT_TRUE(clear_of(-3.0, 0.0, 0.0));
 }
 
 TEST(ScanDatum, TheMeanOfAllScansTellsHowFarTheFirstWasOff) {
