@@ -45,7 +45,7 @@ struct StrengthSigns {
 struct JobLearning {
   ScanDatum datum;
   LearntNumber height_bias = {0.0, 0.015 * 0.015};  ///< of the edge over where it should be [m]
-  LearntNumber floor = {-0.009, 0.006 * 0.006};  ///< of what passes leave over where they aim [m]
+  LearntNumber floor = {-0.009, 0.008 * 0.008};  ///< of what passes leave over where they aim [m]
   LearntNumber payload = {0.0, 0.06 * 0.06};     ///< ln(payload by the scale / simulated)
   LearntNumber energy = {0.0, 0.25 * 0.25};      ///< ln(energy of the dig / simulated)
   double payload_scatter = 0.05 * 0.05;          ///< variance from dig to dig of that logarithm
