@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/angles.hpp"
+#include "base/plan_geometry.hpp"
 
 namespace excavplan {
 namespace {
@@ -23,6 +24,12 @@ constexpr double drop = 0.3;           // from the open bucket to the heap [m]
 constexpr double height_price = 0.15;  // of a metre, as a swing [rad/m]
 constexpr double edge_of_cut = 0.6;    // soil keeps so far from the design [m]
 constexpr double off_keep_out = 0.3;   // likewise from keep-outs, as heaps run and no dump is exact
+constexpr double outside_price = 10.0;  // of a bucket beside the dump areas, as a swing [rad]
+constexpr double inside_bed = 0.5;      // of a truck's border, so that the load falls in [m]
+constexpr double spare_reach = 0.1;     // of what the joints allow [m]
+constexpr double heap_step = 0.1;       // between the places of a heap that are looked at [m]
+constexpr double farthest_run = 3.0;    // of soil from where it falls [m]
+constexpr int halvings = 10;            // of the range in which the top of a heap lies
 
 /// Height of the cone of a bucket of soil.
 double heap_height(const JobSettings& settings) {
@@ -51,24 +58,156 @@ bool fits(const JobMap& map, const Vector2d& place, double radius) {
   return true;
 }
 
+/// In a polygon, and so far from its border.
+bool is_well_in(const SitePolygon& area, const Vector2d& at, double margin) {
+  constexpr int ways = 8;
+  for (int i = 0; i < ways; ++i) {
+    const double angle = 2.0 * pi * i / ways;
+    if (!is_inside(area, at + margin * Vector2d(std::cos(angle), std::sin(angle)))) return false;
+  }
+  return true;
+}
+
+/// How far from the swing axis the pin of the bucket comes at a height over the ground [m].
+double pin_reach(const Machine& machine, double height) {
+  const double boom = machine.boom_length, arm = machine.arm_length;
+  const double bent = machine.limits[static_cast<std::size_t>(Joint::arm)].lower;
+  const double up = height - machine.boom_pin.y();
+  const double left = boom * boom + arm * arm + 2.0 * boom * arm * std::cos(bent) - up * up;
+  return left > 0.0 ? machine.boom_pin.x() + std::sqrt(left) - spare_reach : 0.0;
+}
+
+/// Visits the places within reach, with the way to the left that the machine swings to them [rad].
+template <typename Visit>
+void for_each_place(const Machine& machine, const BasePose& base, Visit visit) {
+  const double reach = machine.boom_length + machine.arm_length;
+  for (double radius = nearest * reach; radius <= farthest * reach; radius += radius_step) {
+    for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
+      if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
+      const double heading = base.heading + turn;
+      const Vector2d off(std::cos(heading), std::sin(heading));
+      visit(Vector2d(Vector2d(base.x, base.y) + radius * off), turn);
+    }
+  }
+}
+
 std::optional<DumpPlace> in_truck(const JobSettings& settings, const Terrain& ground,
                                   const BasePose& base) {
   const JobTruck& truck = *settings.design.truck;
-  Vector2d middle = Vector2d::Zero();
-  for (const Vector2d& corner : truck.bed) middle += corner;
-  middle /= static_cast<double>(truck.bed.size());
   const Machine& machine = settings.site.machine;
-  const Vector2d from = middle - Vector2d(base.x, base.y);
-  if (from.norm() > farthest * (machine.boom_length + machine.arm_length)) return std::nullopt;
-  const auto at = cell_at(ground.bank, middle.x(), middle.y());
-  const double z = at ? ground.bank.z(at->row, at->col) : base.z;
-  DumpPlace place;
-  place.place = {middle.x(), middle.y(),
-                 (std::isnan(z) ? base.z : z) + truck.bed_height + machine.bucket_length + drop};
-  place.swing = wrapped(std::atan2(from.y(), from.x()) - base.heading);
-  place.height = place.place.z() - base.z;
-  place.in_truck = true;
-  return place;
+  std::optional<DumpPlace> best;
+  for_each_place(machine, base, [&](const Vector2d& place, double turn) {
+    if (best && std::abs(turn) >= std::abs(best->swing)) return;
+    if (!is_well_in(truck.bed, place, inside_bed)) return;
+    const auto at = cell_at(ground.bank, place.x(), place.y());
+    const double z = at ? ground.bank.z(at->row, at->col) : base.z;
+    const double pin =
+        (std::isnan(z) ? base.z : z) + truck.bed_height + machine.bucket_length + drop;
+    const double away = std::hypot(place.x() - base.x, place.y() - base.y);
+    if (away > pin_reach(machine, pin - base.z)) return;
+    best = DumpPlace{{place.x(), place.y(), pin}, turn, pin - base.z, true};
+  });
+  return best;
+}
+
+/// A bucket of soil as it comes to lie: a cone on what lies there already.
+struct Heap {
+  double top = 0.0;        ///< [m]
+  double outside = 0.0;    ///< share of it beside the dump areas [-]
+  bool is_allowed = true;  ///< it runs neither into the cut nor to what no soil may touch
+};
+
+/// Lays soil on the ground of a site.
+class HeapLayer {
+ public:
+  HeapLayer(const JobSettings& settings, const JobMap& map, const Terrain& ground)
+      : map_(map),
+        ground_(ground),
+        repose_(std::tan(settings.site.soil.angle_of_repose)),
+        volume_(heaped_capacity(settings.site.machine)) {}
+
+  Heap lay(const Vector2d& place) const {
+    const auto at = cell_at(map_.target, place.x(), place.y());
+    double low = surface(*at);
+    double high = low + std::cbrt(3.0 * volume_ * repose_ * repose_ / pi);
+    for (int i = 0; i < halvings; ++i) {
+      const double top = 0.5 * (low + high);
+      (volume(place, top) < volume_ ? low : high) = top;
+    }
+    return described(place, high);
+  }
+
+ private:
+  double surface(Cell at) const {
+    return ground_.bank.z(at.row, at.col) + ground_.loose(at.row, at.col);
+  }
+
+  /// The cells about a place, with their distance from it [m].
+  template <typename Visit>
+  void for_each_about(const Vector2d& place, double radius, Visit visit) const {
+    for (double x = -radius; x <= radius; x += heap_step) {
+      for (double y = -radius; y <= radius; y += heap_step) {
+        const auto at = cell_at(map_.target, place.x() + x, place.y() + y);
+        if (at && !std::isnan(surface(*at))) visit(*at, std::hypot(x, y));
+      }
+    }
+  }
+
+  double volume(const Vector2d& place, double top) const {
+    double sum = 0.0;
+    for_each_about(place, farthest_run, [&](Cell at, double away) {
+      sum += std::max(0.0, top - repose_ * away - surface(at));
+    });
+    return heap_step * heap_step * sum;
+  }
+
+  Heap described(const Vector2d& place, double top) const {
+    Heap heap;
+    heap.top = top;
+    double all = 0.0;
+    for_each_about(place, farthest_run + edge_of_cut, [&](Cell at, double away) {
+      const auto reaches = [&](double margin) {
+        return top - repose_ * std::max(0.0, away - margin) > surface(at);
+      };
+      const bool is_cut = !std::isnan(map_.target.z(at.row, at.col));
+      const bool is_untouched = map_.untouched(at.row, at.col);
+      if ((is_cut && reaches(edge_of_cut)) || (is_untouched && reaches(off_keep_out)))
+        heap.is_allowed = false;
+      const double height = std::max(0.0, top - repose_ * away - surface(at));
+      all += height;
+      if (!map_.dump(at.row, at.col)) heap.outside += height;
+    });
+    heap.outside = all > 0.0 ? heap.outside / all : 1.0;
+    return heap;
+  }
+
+  const JobMap& map_;
+  const Terrain& ground_;
+  double repose_;
+  double volume_;
+};
+
+/// Where the least of a bucket comes to lie beside the areas.
+std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap& map,
+                                       const Terrain& ground, const BasePose& base) {
+  const Machine& machine = settings.site.machine;
+  const HeapLayer layer(settings, map, ground);
+  std::optional<DumpPlace> best;
+  double least = std::numeric_limits<double>::infinity();
+  for_each_place(machine, base, [&](const Vector2d& place, double turn) {
+    const auto at = cell_at(map.target, place.x(), place.y());
+    if (!at || !map.dump(at->row, at->col) || std::isnan(ground.bank.z(at->row, at->col))) return;
+    if (std::abs(turn) >= least) return;
+    const Heap heap = layer.lay(place);
+    const double pin = heap.top + drop + machine.bucket_length;
+    const double away = std::hypot(place.x() - base.x, place.y() - base.y);
+    const double cost = outside_price * heap.outside + std::abs(turn) +
+                        height_price * std::max(0.0, heap.top - base.z);
+    if (!heap.is_allowed || cost >= least || away > pin_reach(machine, pin - base.z)) return;
+    least = cost;
+    best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
+  });
+  return best;
 }
 
 }  // namespace
@@ -77,30 +216,23 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
                                     const Terrain& ground, const BasePose& base) {
   if (settings.design.truck) return in_truck(settings, ground, base);
   const Machine& machine = settings.site.machine;
-  const double reach = machine.boom_length + machine.arm_length;
   const double repose = std::tan(settings.site.soil.angle_of_repose);
   const double cone = heap_height(settings);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for (double radius = nearest * reach; radius <= farthest * reach; radius += radius_step) {
-    for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
-      if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
-      const Vector2d place =
-          Vector2d(base.x, base.y) +
-          radius * Vector2d(std::cos(base.heading + turn), std::sin(base.heading + turn));
-      const auto at = cell_at(map.target, place.x(), place.y());
-      if (!at || !map.dump(at->row, at->col)) continue;
-      const double loose = ground.loose(at->row, at->col);
-      const double surface = ground.bank.z(at->row, at->col) + loose;
-      if (std::isnan(surface)) continue;
-      const double cost = std::abs(turn) + height_price * std::max(0.0, surface - base.z);
-      if (cost >= least || !fits(map, place, (loose + cone) / repose)) continue;
-      least = cost;
-      const double pin = surface + cone + drop + machine.bucket_length;
-      best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
-    }
-  }
-  return best;
+  for_each_place(machine, base, [&](const Vector2d& place, double turn) {
+    const auto at = cell_at(map.target, place.x(), place.y());
+    if (!at || !map.dump(at->row, at->col)) return;
+    const double loose = ground.loose(at->row, at->col);
+    const double surface = ground.bank.z(at->row, at->col) + loose;
+    if (std::isnan(surface)) return;
+    const double cost = std::abs(turn) + height_price * std::max(0.0, surface - base.z);
+    if (cost >= least || !fits(map, place, (loose + cone) / repose)) return;
+    least = cost;
+    const double pin = surface + cone + drop + machine.bucket_length;
+    best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
+  });
+  return best ? best : least_outside(settings, map, ground, base);
 }
 
 }  // namespace excavplan

@@ -202,6 +202,7 @@ JobLearning read_learning(const std::vector<double>& numbers) {
 template <typename Record, typename Visit>
 void for_each_count(Record& record, Visit visit) {
   visit("passes_here", record.passes_here);
+  visit("bench", record.bench);
   visit("fruitless", record.fruitless);
   visit("fruitless_digs", record.fruitless_digs);
   visit("trucks", record.trucks);
@@ -247,6 +248,7 @@ Json record_json(const JobRecord& record) {
   for (const DigStart& each : record.barren) {
     json["barren"].push_back(each.lane);
     json["barren"].push_back(each.along);
+    json["barren"].push_back(each.turned);
   }
   json["looks"] = Json::array();
   for (const SensorLook& each : record.looks) {
@@ -281,8 +283,8 @@ JobRecord read_record(const std::string& path) {
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));
   const std::vector<double> barren = object.numbers("barren");
-  for (std::size_t i = 0; i + 1 < barren.size(); i += 2)
-    record.barren.push_back({barren[i], barren[i + 1]});
+  for (std::size_t i = 0; i + 2 < barren.size(); i += 3)
+    record.barren.push_back({barren[i], barren[i + 1], barren[i + 2]});
   const std::vector<double> looks = object.numbers("looks");
   for (std::size_t i = 0; i + 6 < looks.size(); i += 7) {
     record.looks.push_back({{looks[i], looks[i + 1], looks[i + 2]},

@@ -34,6 +34,7 @@ struct JobRecord {
   bool has_arrived = false;           ///< at its present station
   bool wants_scan = false;            ///< after a stall
   int passes_here = 0;                ///< along the floor from this station
+  int bench = 0;                      ///< layer of a wide design that is dug from this station
   int fruitless_digs = 0;             ///< digs for volume in succession that lifted little
   int fruitless = 0;                  ///< finishing passes in succession that lifted little
   std::vector<DigStart> barren;   ///< digs from this station that lifted much less than foretold

@@ -16,15 +16,21 @@ constexpr double nearest_work = 1.15;  // before the tracks, so that the bucket 
 constexpr double farthest_work = 0.78;  // of the reach of the front from its pin
 constexpr double end_wall = 0.67;       // of that reach to the far end: nearer the bucket opens too
                                         // little for a steep cut
+constexpr double end_of_wide = 0.74;    // likewise of a wide design: its face leans back, and takes
+                                        // up what is within reach of a nearer place
 constexpr double overlap = 0.25;        // of what is dug from two places in succession [m]
 constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.03;     // to the ends of the design, half a cell at least [m]
 constexpr double lane_overlap = 0.1;    // of two lanes [m]
-constexpr double standing_step = 0.2;   // of the ground under the tracks that is looked at [m]
 constexpr double beside_edge = 0.6;     // of tracks that stand beside the design [m]
 constexpr double batter_step = 0.3;     // of lanes that cut a face in steps [m]
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
+
+constexpr double widest_of_wide = 1.0;   // likewise where the design is wider than such lanes [m]
+constexpr double widest_straight = 1.1;  // of it, at most, where no machine is exact [m]
+constexpr double off_wall = 0.05;        // of passes beside it [m]
+constexpr double fan_step = 0.1;         // between planes through the swing axis [rad]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
@@ -48,30 +54,32 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
   return groups;
 }
 
-/// The tracks of a machine at a station, and so far around them.
-struct TrackArea {
-  const JobFrame& frame;
-  const JobStation& station;
-  const Machine& machine;
-  double around = 0.0;  ///< [m]
-};
-
-/// The cells of a grid there.
-template <typename Visit>
-void for_each_under(const TrackArea& tracks, const HeightMap& grid, Visit visit) {
-  const JobStation& station = tracks.station;
-  const double front = tracks.machine.track_front + tracks.around;
-  const double half = 0.5 * tracks.machine.undercarriage_width() + tracks.around;
-  const Eigen::Rotation2Dd turn(station.turned);
-  const double rows = std::ceil(front / standing_step), cols = std::ceil(half / standing_step);
-  for (double i = -rows; i <= rows; ++i) {
-    for (double k = -cols; k <= cols; ++k) {
-      const Eigen::Vector2d off = turn * Eigen::Vector2d(front * i / rows, half * k / cols);
-      const Eigen::Vector2d at =
-          tracks.frame.place(station.along + off.x(), station.beside + off.y());
-      visit(cell_at(grid, at.x(), at.y()));
+/// As few groups as are all within reach aside.
+std::vector<std::vector<double>> wide_groups_of(const std::vector<double>& lanes) {
+  for (std::size_t count = 1;; ++count) {
+    std::vector<std::vector<double>> groups;
+    double widest = 0.0;
+    for (std::size_t g = 0; g < count; ++g) {
+      groups.emplace_back(
+          lanes.begin() + static_cast<std::ptrdiff_t>(g * lanes.size() / count),
+          lanes.begin() + static_cast<std::ptrdiff_t>((g + 1) * lanes.size() / count));
+      widest = std::max(widest, groups.back().back() - groups.back().front());
     }
+    if (widest <= 2.0 * widest_of_wide) return groups;
   }
+}
+
+/// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
+/// the walls: one that stands too far inside would stop them.
+std::vector<double> lanes_of(const JobStation& station, bool finishing) {
+  if (!finishing) return station.lanes;
+  std::vector<double> all;
+  for (const double lane : station.lanes) {
+    if (!all.empty()) all.push_back(0.5 * (all.back() + lane));
+    all.push_back(lane);
+  }
+  if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
+  return all;
 }
 
 double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
@@ -93,11 +101,13 @@ WorkRange work_range(const JobFrame& frame, const Machine& machine, double along
 
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
   const Machine& machine = settings.site.machine;
-  const double first = frame.far - at_reach(machine, end_wall);
+  const auto lanes_of_all = lanes_of(frame, machine.bucket.width_outside);
+  const bool is_wide = groups_of(lanes_of_all).size() > 1;
+  const double first = frame.far - at_reach(machine, is_wide ? end_of_wide : end_wall);
   const double last = std::min(first, frame.near - nearest_of(machine));
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
-  const auto groups = groups_of(lanes_of(frame, machine.bucket.width_outside));
+  const auto groups = is_wide ? wide_groups_of(lanes_of_all) : groups_of(lanes_of_all);
   std::vector<JobStation> stations;
   for (int i = 0; i <= more; ++i) {
     const double along = more == 0 ? first : first + (last - first) * i / more;
@@ -105,6 +115,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
       // Every other time from the other side: the machine need not go back across.
       const auto& lanes = groups[i % 2 == 0 ? g : groups.size() - 1 - g];
       stations.push_back({along, 0.5 * (lanes.front() + lanes.back()), lanes});
+      stations.back().is_wide = is_wide;
     }
   }
   return stations;
@@ -134,6 +145,32 @@ bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& 
     free &= cell && !map.dump(cell->row, cell->col) && !map.untouched(cell->row, cell->col);
   });
   return free;
+}
+
+std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& station,
+                                 const Machine& machine, const Eigen::Vector2d& at,
+                                 bool finishing) {
+  const WorkRange range = work_range(frame, machine, at.x());
+  std::vector<WorkLine> lines;
+  Eigen::AlignedBox1d fan;
+  for (const double lane : lanes_of(station, finishing)) {
+    const double beside = lane - at.y();
+    if (!station.is_wide || std::abs(beside) <= widest_straight) {
+      lines.push_back({0.0, beside, range.near, range.far, range.ends_at_wall});
+    } else if (!finishing) {
+      for (const double ahead : {range.near, range.far})
+        fan.extend(Eigen::Matrix<double, 1, 1>(std::atan2(beside, ahead)));
+    }
+  }
+  if (fan.isEmpty()) return lines;
+  const double widest = fan.sizes()(0);
+  const int more = static_cast<int>(std::ceil(widest / fan_step));
+  for (int i = 0; i <= more; ++i) {
+    const double turned = fan.min()(0) + (more > 0 ? widest * i / more : 0.0);
+    const double near = range.near / std::cos(turned);
+    if (near < farthest_of(machine)) lines.push_back({turned, 0.0, near, farthest_of(machine)});
+  }
+  return lines;
 }
 
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <excavplan/ground/terrain.hpp>
 
@@ -22,6 +25,7 @@ struct JobStation {
   std::vector<double> lanes = {};  ///< that it digs from there, beside the line of work [m]
   double turned = 0.0;             ///< from the line of work [rad]
   bool is_beyond = false;          ///< the far end: all of it is along the reversed() line
+  bool is_wide = false;            ///< of a design that is wider than one place's lanes
 
   bool is_lookout() const { return lanes.empty(); }  ///< it only scans from there
 };
@@ -36,6 +40,33 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
 /// only where the machine is heavy enough.
 std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings& settings);
 
+/// The tracks of a machine at a station, and so far around them.
+struct TrackArea {
+  const JobFrame& frame;
+  const JobStation& station;
+  const Machine& machine;
+  double around = 0.0;  ///< [m]
+};
+
+/// The cells of a grid there, or nothing of a place beside the grid.
+template <typename Visit>
+void for_each_under(const TrackArea& tracks, const HeightMap& grid, Visit visit) {
+  constexpr double standing_step = 0.2;  // of what is looked at; ours [m]
+  const JobStation& station = tracks.station;
+  const double front = tracks.machine.track_front + tracks.around;
+  const double half = 0.5 * tracks.machine.undercarriage_width() + tracks.around;
+  const Eigen::Rotation2Dd turn(station.turned);
+  const double rows = std::ceil(front / standing_step), cols = std::ceil(half / standing_step);
+  for (double i = -rows; i <= rows; ++i) {
+    for (double k = -cols; k <= cols; ++k) {
+      const Eigen::Vector2d off = turn * Eigen::Vector2d(front * i / rows, half * k / cols);
+      const Eigen::Vector2d at =
+          tracks.frame.place(station.along + off.x(), station.beside + off.y());
+      visit(cell_at(grid, at.x(), at.y()));
+    }
+  }
+}
+
 /// Whether the machine has ground under its tracks there, not too near to the design and off the
 /// places for soil and what must not be touched.
 bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& machine,
@@ -48,6 +79,21 @@ struct WorkRange {
   bool ends_at_wall = false;  ///< `far` is the end of a design that is not battered
 };
 WorkRange work_range(const JobFrame& frame, const Machine& machine, double along);
+
+/// A vertical plane to dig in: to the left of the machine's view and beside the swing axis.
+struct WorkLine {
+  double turned = 0.0;        ///< [rad]
+  double lane = 0.0;          ///< [m]
+  double near = 0.0;          ///< from the swing axis to the nearest part of the work [m]
+  double far = 0.0;           ///< to the farthest [m]
+  bool ends_at_wall = false;  ///< there, the design ends
+};
+
+/// The lanes of a station from where the machine stands, and for its digs for volume a fan of
+/// planes through the swing axis over the lanes that are too far beside it.
+/// @param at  along the line of work and beside it [m]
+std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& station,
+                                 const Machine& machine, const Eigen::Vector2d& at, bool finishing);
 
 /// A machine at a station, on the mean height of the ground under its tracks.
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

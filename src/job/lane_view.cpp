@@ -98,6 +98,10 @@ void LaneView::look_under_bucket(double bucket_width) {
   }
 }
 
+void LaneView::keep_above(double level) {
+  floor_ = floor_.isNaN().select(floor_, floor_.max(level));
+}
+
 GroundProfile LaneView::floor(double allowance) const {
   // Nothing is dug where the floor is not known.
   return between_columns(surface_, floor_.isNaN().select(ground_at_, floor_ + allowance));

@@ -13,10 +13,11 @@
 
 namespace excavplan {
 
-/// Where a dig begins: beside the swing axis and before it [m].
+/// Where a dig begins: beside the swing axis and before it, along a line to the left of the view.
 struct DigStart {
-  double lane = 0.0;
-  double along = 0.0;
+  double lane = 0.0;    ///< [m]
+  double along = 0.0;   ///< [m]
+  double turned = 0.0;  ///< [rad]
 };
 
 /// How the surface of a view changed.
@@ -47,6 +48,8 @@ class LaneView {
   const GroundAlong& ground() const { return ground_; }
   const HeightMap& surface() const { return surface_; }
 
+  /// Nothing is cut below that level, as if the design were no deeper [m].
+  void keep_above(double level);
   /// The highest of the design under the bucket; beside the design the ground. So much higher [m].
   GroundProfile floor(double allowance) const;
   /// Of the ground under the bucket, without the strips at its edges, which it may miss: its

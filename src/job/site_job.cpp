@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,7 @@
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
+#include "job/station_place.hpp"
 #include "job/step_motion.hpp"
 #include "job/step_search.hpp"
 
@@ -38,7 +40,10 @@ constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 16;              // along the floor from one station
 constexpr int most_fruitless = 6;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
-constexpr double off_wall = 0.05;            // of passes beside it [m]
+constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
+constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
+constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
+constexpr double most_undug = 0.3;           // share of such cells where passes pay
 constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
@@ -54,19 +59,6 @@ constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no
 constexpr double after_stall = 0.7;          // of the depth of a cut
 constexpr double after_success = 1.1;        // likewise
 constexpr double shallowest_cut = 0.06;      // [m]
-
-/// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
-/// the walls: one that stands too far inside would stop them.
-std::vector<double> lanes_of(const JobStation& station, bool finishing) {
-  if (!finishing) return station.lanes;
-  std::vector<double> all;
-  for (const double lane : station.lanes) {
-    if (!all.empty()) all.push_back(0.5 * (all.back() + lane));
-    all.push_back(lane);
-  }
-  if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
-  return all;
-}
 
 /// Whether all are dug from one line.
 bool is_one_group(const std::vector<JobStation>& stations) {
@@ -185,6 +177,8 @@ struct SiteJob::State {
 
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
+  std::vector<double> benches_below() const;
+  std::optional<StepDig> best_dig_of(StepTask& task, const std::vector<double>& benches);
   StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
   JobStep move_step(const JobStation& station);
   JobStep leave();
@@ -194,6 +188,7 @@ struct SiteJob::State {
   }
   BasePose base_of(const JobStation& station) const;
   bool wants_passes(const BasePose& base) const;
+  bool is_dug_out(const BasePose& base) const;
   template <typename Visit>
   void for_each_in_reach(const BasePose& base, Visit visit) const;
   void learn_floor();
@@ -250,15 +245,11 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
                                  const BasePose& straight) const {
   const JobFrame line = frame_at(stations[record.station]);
   const Eigen::Vector2d at = line.of({straight.x, straight.y});
-  const WorkRange range = work_range(line, settings.site.machine, at.x());
   StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
-  for (const double lane : lanes_of(stations[record.station], finishing))
-    task.lanes.push_back(lane - at.y());
-  task.near = range.near;
-  task.far = range.far;
-  task.ends_at_wall = range.ends_at_wall;
+  task.lines = work_lines(line, stations[record.station], settings.site.machine, at, finishing);
   task.may_risk = record.progress.stalls == 0;
   task.finishing = finishing;
+  task.is_wide = stations[record.station].is_wide;
   task.keeps_load = finishing && may_keep(0.0);
   task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
@@ -270,6 +261,37 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   return task;
 }
 
+/// Heights of the layers that a wide design is dug in from here, all but the lowest [m].
+std::vector<double> SiteJob::State::benches_below() const {
+  std::vector<double> benches;
+  if (!stations[record.station].is_wide) return benches;
+  double top = -std::numeric_limits<double>::infinity(), low = -top;
+  for_each_in_reach(record.base, [&](Cell cell) {
+    const double z = first.bank.z(cell.row, cell.col);
+    if (!std::isnan(z)) top = std::max(top, z);
+    low = std::min(low, map.target.z(cell.row, cell.col));
+  });
+  const int count = static_cast<int>(std::round((top - low) / bench_height));
+  for (int i = 1; i < count; ++i) benches.push_back(top - (top - low) * i / count);
+  return benches;
+}
+
+/// From the bench that was dug last, down to the design.
+std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
+                                                   const std::vector<double>& benches) {
+  const int count = static_cast<int>(benches.size());
+  for (int bench = std::min(record.bench, count); bench < count; ++bench) {
+    task.bench = benches[static_cast<std::size_t>(bench)];
+    record.bench = bench + 1;
+    auto dig = best_dig(task);
+    if (!dig) continue;
+    record.bench = bench;
+    return dig;
+  }
+  task.bench.reset();
+  return best_dig(task);
+}
+
 std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   const auto dump = dump_place(settings, map, ground.expected(), record.base);
   if (!dump) return std::nullopt;
@@ -277,7 +299,8 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   straight.heading = frame_at(stations[record.station]).heading;
   straight.z += record.learning.height_bias.mean;
   StepTask task = task_of(finishing, *dump, straight);
-  auto dig = best_dig(task);
+  const std::vector<double> benches = finishing ? std::vector<double>() : benches_below();
+  auto dig = best_dig_of(task, benches);
   for (int softer = 1; !dig && !finishing && softer <= most_softer; ++softer) {
     task.hard_factor = task.strength_factor;
     task.strength_factor = record.learning.strength_factor(-softer);
@@ -285,7 +308,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   }
   if (!dig) return std::nullopt;
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
-  step.swung = wrapped(straight.heading - record.base.heading);
+  step.swung = wrapped(straight.heading + dig->turned - record.base.heading);
   step.lane = dig->lane;
   step.path = std::move(dig->path);
   step.dump = dump->place;
@@ -294,11 +317,12 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   step.dumps_first = record.carried && !finishing;
   step.keeps_load = task.keeps_load && can_hold_load(settings.site.soil, step.path) &&
                     may_keep(dig->dig.payload_volume);
-  foretell(step, *dump, *dig);
+  const DumpPlace beside = seen_from(*dump, dig->turned);
+  foretell(step, beside, *dig);
   if (!check_motion(step) && step.keeps_load) {
     step.keeps_load = false;
     step.reason.clear();
-    foretell(step, *dump, *dig);
+    foretell(step, beside, *dig);
     (void)check_motion(step);
   }
   record.planned = dig->dig;
@@ -406,6 +430,17 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
   return high > most_high * count || heaps > most_heaps * count;
 }
 
+/// Whether little of what is within reach still stands.
+bool SiteJob::State::is_dug_out(const BasePose& base) const {
+  int count = 0;
+  int high = 0;
+  for_each_in_reach(base, [&](Cell cell) {
+    ++count;
+    if (above_design(map, ground.expected(), cell) > undug * settings.design.tolerance) ++high;
+  });
+  return high <= most_undug * count;
+}
+
 /// How the ground lies that passes from here left.
 void SiteJob::State::learn_floor() {
   if (record.passes_here == 0 || stations[record.station].is_lookout()) return;
@@ -429,18 +464,22 @@ double SiteJob::State::allowance_of_passes() const {
 }
 
 JobStep SiteJob::State::decide() {
-  if (!record.has_arrived) return move_step(stations[record.station]);
+  if (!record.has_arrived) {
+    const auto place = next_place(progress());
+    return place ? move_step(*place) : leave();
+  }
   if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (stations[record.station].is_lookout()) return leave();
   if (ground.unseen_digs() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
-  if (record.fruitless_digs < most_fruitless_digs) {
+  const bool is_wide = stations[record.station].is_wide;
+  if (record.fruitless_digs < (is_wide ? most_fruitless_wide : most_fruitless_digs)) {
     if (auto step = dig_step(false)) return *std::move(step);
   }
   const std::size_t passes = ground.unseen_digs(JobAction::finish);
   if (ground.unseen_digs() > passes || passes >= most_unseen_passes)
     return step_of(JobAction::scan, "to see what is left");
   if (record.passes_here < most_passes && record.fruitless < most_fruitless &&
-      wants_passes(record.base)) {
+      wants_passes(record.base) && (!is_wide || is_dug_out(record.base))) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
   if (auto step = dump_step()) return *std::move(step);
@@ -459,7 +498,8 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
   }
   const bool is_again = record.station > 0 && stations[record.station - 1].is_lookout();
   if ((is_again || station.is_beyond) && !wants_passes(base_of(station))) return std::nullopt;
-  return station;
+  if (!station.is_wide) return station;
+  return nearest_place({settings, map, first, ground.expected()}, frame_at(station), station);
 }
 
 /// To the next place from which there is something to do, or the end.
@@ -475,6 +515,7 @@ JobStep SiteJob::State::leave() {
     const auto place = next_place(now);
     if (!place) continue;
     record.passes_here = 0;
+    record.bench = 0;
     record.fruitless = 0;
     record.fruitless_digs = 0;
     record.barren.clear();
@@ -521,7 +562,10 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   int& fruitless = finishing ? record.fruitless : record.fruitless_digs;
   const bool is_fruitless = report.stalled || lifted < least;
   fruitless = is_fruitless ? fruitless + 1 : 0;
-  if (is_fruitless && finishing) record.barren.push_back({step.lane, step.path.start_x});
+  if (is_fruitless && (finishing || stations[record.station].is_wide)) {
+    const double view = frame_at(stations[record.station]).heading - step.base.heading;
+    record.barren.push_back({step.lane, step.path.start_x, wrapped(step.swung - view)});
+  }
   progress.payload_mass += lifted;
   if (report.stalled) {
     ++progress.stalls;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -28,6 +29,7 @@ constexpr double least_ridge = 0.004;    // likewise of a finishing pass: it may
 constexpr double too_deep_price = 4.0;   // of soil taken below the design, over that of the design
 constexpr double spill_price = 2.0;      // of soil spilled beside design and dump areas, likewise
 constexpr double most_touched = 0.0005;  // by a dig, of what no soil may touch [m^3]
+constexpr std::size_t most_lanes = 7;    // that are searched at once
 constexpr std::size_t most_confirmed = 8;  // digs whose ground is looked at
 constexpr double level_from = 0.2;  // before the start of a dig, the ground whose level counts [m]
 constexpr double level_to = 1.2;    // likewise [m]
@@ -41,11 +43,13 @@ constexpr double in_shape_over = 0.5;  // so far the ground is in shape after it
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
 constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
+constexpr double same_turn = 0.03;     // likewise [rad]
 constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
-constexpr double least_in_hard = 0.07;  // likewise in soil that lets no bucket fill
-constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
-constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
-constexpr double standing = 0.05;       // of a bank in a lane over the mean ground of the lane [m]
+constexpr double least_in_hard = 0.07;   // likewise in soil that lets no bucket fill
+constexpr double least_on_bench = 0.45;  // likewise where more is below that can come with it
+constexpr double least_at_wall = 0.06;   // likewise, counting what lies there twice
+constexpr double least_lifted = 0.012;   // by a finishing pass [m^3]
+constexpr double standing = 0.05;        // of a bank in a lane over the mean ground of the lane [m]
 constexpr double least_finished = 0.035;  // that a pass brings within the tolerance [m^2]
 constexpr double least_cleared = 0.02;    // or clears, for later ones [m^3]
 constexpr double wall_from = 0.5;         // before the end, soil that later digs would leave [m]
@@ -74,6 +78,7 @@ constexpr double most_strength = 20.0;   // likewise
 constexpr int halvings = 6;              // of these bounds, by their logarithm
 constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
+constexpr Attitude steep_attitude = {1.1, false};              // along the walls of a pit
 const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
@@ -87,8 +92,9 @@ struct Candidate {
 
 /// A lane, and what all digs in it ask of its view.
 struct Lane {
-  Lane(LaneView seen, double allowance)
-      : view(std::move(seen)),
+  Lane(const WorkLine& where, LaneView seen, double allowance)
+      : line(where),
+        view(std::move(seen)),
         floor(view.floor(allowance)),
         ground(view.top()),
         mean(view.mean()),
@@ -109,6 +115,7 @@ struct Lane {
     return known > 0 ? sum / known : std::nan("");
   }
 
+  WorkLine line;
   LaneView view;
   GroundProfile floor;
   GroundProfile ground;   ///< that the bucket meets first
@@ -126,25 +133,26 @@ class StepSearch {
         hard_(machine_, with_strength(task.settings.site.soil, task.hard_factor),
               task.density_percent),
         capacity_(heaped_capacity(machine_) - task.carried) {
-    for (const double lane : task.lanes) {
-      lanes_.emplace_back(LaneView(task.ground, task.map, dig_line(task.base, 0.0, lane), extent(),
-                                   machine_.bucket.width_outside),
-                          task.allowance);
+    for (const WorkLine& line : task.lines) {
+      LaneView view(task.ground, task.map, dig_line(task.base, line.turned, line.lane),
+                    extent(line), machine_.bucket.width_outside);
+      if (task.bench) view.keep_above(*task.bench - task.base.z);
+      lanes_.emplace_back(line, std::move(view), task.allowance);
     }
   }
 
   std::optional<StepDig> run() {
-    if (task_.ends_at_wall) {
+    if (!task_.bench) {
       if (auto dig = best_at_wall()) return dig;
     }
-    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) lay_out(lane);
-    if (task_.finishing) return best(Aim::shape);
-    auto dig = best(Aim::volume);
-    if (dig && !dig->may_stall && dig->dig.fill > poor_fill) return dig;
-    candidates_.clear();
-    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) lay_out_in_hard(lane);
-    auto bite = best(Aim::hard);
-    return bite && (!dig || bite->worth > dig->worth) ? bite : dig;
+    const std::vector<std::size_t> lanes = fullest_first();
+    for (std::size_t done = 0; done < lanes.size(); done += most_lanes) {
+      const std::vector<std::size_t> some(
+          lanes.begin() + static_cast<std::ptrdiff_t>(done),
+          lanes.begin() + static_cast<std::ptrdiff_t>(std::min(done + most_lanes, lanes.size())));
+      if (auto dig = best_in(some)) return dig;
+    }
+    return std::nullopt;
   }
 
  private:
@@ -152,12 +160,37 @@ class StepSearch {
   /// or the shape of the floor.
   enum class Aim { wall, volume, hard, shape };
 
+  std::optional<StepDig> best_in(const std::vector<std::size_t>& lanes) {
+    candidates_.clear();
+    for (const std::size_t lane : lanes) lay_out(lane);
+    if (task_.finishing) return best(Aim::shape);
+    auto dig = best(Aim::volume);
+    if (dig && !dig->may_stall && dig->dig.fill > poor_fill) return dig;
+    candidates_.clear();
+    for (const std::size_t lane : lanes) lay_out_in_hard(lane);
+    auto bite = best(Aim::hard);
+    return bite && (!dig || bite->worth > dig->worth) ? bite : dig;
+  }
+
+  /// The lanes by what is above the design in them, if there are too many to look at all at once.
+  std::vector<std::size_t> fullest_first() const {
+    std::vector<std::size_t> order(lanes_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (order.size() <= most_lanes) return order;
+    std::vector<double> above;
+    for (const Lane& lane : lanes_) above.push_back(lane.excess.sum());
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return above[a] > above[b]; });
+    return order;
+  }
+
   /// As steeply as the machine surely can; else, if it may risk a stall, what is worth most.
   std::optional<StepDig> best_at_wall() {
     std::vector<std::size_t> lanes;
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
-      if (has_end_wall(lanes_[lane])) lanes.push_back(lane);
+      if (lanes_[lane].line.ends_at_wall && has_end_wall(lanes_[lane])) lanes.push_back(lane);
     }
+    if (lanes.empty()) return std::nullopt;
     std::optional<StepDig> risky_one;
     for (const Attitude& attitude : wall_attitudes) {
       for (const std::size_t lane : lanes) cut_end_wall(lane, attitude);
@@ -209,18 +242,18 @@ class StepSearch {
       const HeightMapSimulator simulator(machine_,
                                          with_strength(task_.settings.site.soil, std::exp(middle)),
                                          task_.density_percent);
-      const auto dig = dig_of_path(machine_, simulator, ground, path, cycle_of(path));
+      const auto dig = dig_of_path(machine_, simulator, ground, path, {});
       (std::holds_alternative<PlannedDig>(dig) ? low : high) = middle;
     }
     return std::exp(0.5 * (low + high));
   }
 
-  Rectangle extent() const {
+  Rectangle extent(const WorkLine& line) const {
     const double cell = task_.ground.bank.cell_size;
     const auto on_line = [&](double value) { return cell * std::floor(value / cell); };
     const double half = on_line(0.5 * machine_.bucket.width_outside + room_beside);
-    return {on_line(std::max(task_.near - room_beyond, machine_.track_front)), -half,
-            on_line(task_.far + room_beyond), half};
+    return {on_line(std::max(line.near - room_beyond, machine_.track_front)), -half,
+            on_line(line.far + room_beyond), half};
   }
 
   void add_approach(std::size_t lane, DigPath& path) const {
@@ -237,17 +270,21 @@ class StepSearch {
 
   void lay_out(std::size_t lane) {
     if (task_.finishing) return lay_out_passes(lane);
-    for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
+    const WorkLine& line = lanes_[lane].line;
+    for (double start = line.far; start > line.near + start_step; start -= start_step) {
       if (is_worth_a_dig(lanes_[lane], start))
         lay_out_layers(lane, start, attitudes, rules_in(lane));
+      if (task_.is_wide && is_worth_a_dig(lanes_[lane], start))
+        lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
     }
   }
 
   /// Bites, and the thinnest layers.
   void lay_out_in_hard(std::size_t lane) {
     const Lane& at = lanes_[lane];
+    const WorkLine& line = at.line;
     DigPathOptions rules = rules_in(lane);
-    for (double start = task_.far; start > task_.near; start -= start_step) {
+    for (double start = line.far; start > line.near; start -= start_step) {
       const double ground = at.ground(start);
       if (!(ground - at.floor(start) > least_bitten)) continue;
       for (const double angle : bite_angles) {
@@ -271,8 +308,9 @@ class StepSearch {
     const GroundProfile& ground = lanes_[lane].mean;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
-    const double last = task_.near + least_pass * (task_.far - task_.near);
-    for (double start = task_.far; start > last; start -= start_step) {
+    const WorkLine& line = lanes_[lane].line;
+    const double last = line.near + least_pass * (line.far - line.near);
+    for (double start = line.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
       if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
@@ -280,9 +318,9 @@ class StepSearch {
       }
       const double down = std::max(0.0, ground(start) - rules.floor(start));
       for (const double angle : finish_angles) {
-        const double drag = start - down / std::tan(angle) - nearest(angle);
+        const double drag = start - down / std::tan(angle) - nearest(line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
-        const double shorter = drag - (in_shape_before(lanes_[lane], start) - task_.near);
+        const double shorter = drag - (in_shape_before(lanes_[lane], start) - line.near);
         if (shorter > shortest_drag && shorter < drag)
           add(lane, {angle, 1.0, shorter}, start, rules);
       }
@@ -291,12 +329,12 @@ class StepSearch {
 
   /// Where the ground before a start comes into shape for a while: to cut on would only roughen it.
   double in_shape_before(const Lane& lane, double start) const {
-    for (double x = start - shortest_pass; x > task_.near; x -= lane.view.surface().cell_size) {
+    for (double x = start - shortest_pass; x > lane.line.near; x -= lane.view.surface().cell_size) {
       const double left =
           lane.mean_over(x - in_shape_over, x, [&](Index col) { return lane.excess(col); });
       if (left < task_.slack) return x;
     }
-    return task_.near;
+    return lane.line.near;
   }
 
   /// Layers of all depths from there.
@@ -320,7 +358,7 @@ class StepSearch {
 
   /// Whether soil stands before the end of the work.
   bool has_end_wall(const Lane& lane) const {
-    return lane.mean_over(task_.far - wall_from, task_.far - wall_to,
+    return lane.mean_over(lane.line.far - wall_from, lane.line.far - wall_to,
                           [&](Index col) { return lane.excess(col); }) > high_wall;
   }
 
@@ -328,12 +366,13 @@ class StepSearch {
   /// take off by itself.
   void cut_end_wall(std::size_t lane, const Attitude& attitude) {
     DigPathOptions rules = rules_in(lane);
-    lay_out_layers(lane, task_.far, std::array{attitude}, rules);
+    const double far = lanes_[lane].line.far;
+    lay_out_layers(lane, far, std::array{attitude}, rules);
     // From its top, where what lies before it is deeper already.
-    const double top = lanes_[lane].ground(task_.far);
+    const double top = lanes_[lane].ground(far);
     for (const double cut : cut_depths) {
       if (cut > task_.deepest_cut) break;
-      lay_out_layer(lane, task_.far, {attitude.angle, cut, top - cut}, rules);
+      lay_out_layer(lane, far, {attitude.angle, cut, top - cut}, rules);
     }
   }
 
@@ -348,7 +387,7 @@ class StepSearch {
                      const DigPathOptions& rules) {
     double last = 0.0;
     const double from = start - layer.depth / std::tan(layer.angle);
-    const double longest = from - nearest(layer.angle);
+    const double longest = from - nearest(lanes_[lane].line, layer.angle);
     if (!(longest > shortest_drag)) return;
     for (const double fill : fills) {
       const double drag =
@@ -361,11 +400,11 @@ class StepSearch {
 
   /// Where a drag with this floor angle may end: as the bucket curls, its tip comes nearer to the
   /// tracks.
-  double nearest(double angle) const {
+  double nearest(const WorkLine& line, double angle) const {
     const double attitude = angle + heel_clearance + machine_.beta();
     const double curls = machine_.bucket_length * (1.0 - std::cos(attitude));
     constexpr double rounded = 0.02;  // away from the limit [m]
-    return std::max(task_.near,
+    return std::max(line.near,
                     machine_.track_front + DigPathOptions{}.track_margin + curls + rounded);
   }
 
@@ -388,12 +427,10 @@ class StepSearch {
     const LaneView& view = lane.view;
     const auto [from, height] = start;
     const double cell = view.surface().cell_size;
-    const double bulking =
-        (1.0 + simulator_.loose().void_ratio) / (1.0 + simulator_.bank().void_ratio);
-    const double wanted = fill * capacity_ / bulking / machine_.bucket.width_outside;
+    const double wanted = fill * capacity_ / bulking() / machine_.bucket.width_outside;
     double met = 0.0;
     double x = from;
-    while (met < wanted && x > task_.near) {
+    while (met < wanted && x > lane.line.near) {
       const auto col = static_cast<Index>((x - view.x(0)) / cell);
       if (col < 0 || col >= view.columns()) break;
       const double above = view.ground_at(col) - height;
@@ -405,8 +442,8 @@ class StepSearch {
 
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
-    if (is_barren(task_.lanes[lane], start)) return;
     const Lane& at = lanes_[lane];
+    if (is_barren(at.line, start)) return;
     const GroundProfile& ground = task_.finishing && !at.has_bank_at(start) ? at.mean : at.ground;
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
     auto* made = std::get_if<DigPath>(&path);
@@ -414,17 +451,20 @@ class StepSearch {
     candidates_.push_back({lane, std::move(*made)});
   }
 
-  bool is_barren(double lane, double start) const {
+  bool is_barren(const WorkLine& line, double start) const {
     return std::any_of(task_.barren.begin(), task_.barren.end(), [&](const DigStart& each) {
-      return std::abs(each.lane - lane) < same_lane && std::abs(each.along - start) < same_start;
+      return std::abs(each.lane - line.lane) < same_lane &&
+             std::abs(each.turned - line.turned) < same_turn &&
+             std::abs(each.along - start) < same_start;
     });
   }
 
   bool can_hold(const DigPath& path) const { return can_hold_load(task_.settings.site.soil, path); }
 
-  CycleOptions cycle_of(const DigPath& path) const {
+  CycleOptions cycle_of(const Candidate& dig) const {
     const double carried = loose_mass(task_.settings.site.soil, task_.carried);
-    return cycle_after(task_.dump, task_.keeps_load && can_hold(path), carried);
+    return cycle_after(seen_from(task_.dump, lanes_[dig.lane].line.turned),
+                       task_.keeps_load && can_hold(dig.path), carried);
   }
 
   double cost(const PlannedDig& dig) const {
@@ -433,8 +473,7 @@ class StepSearch {
 
   void weigh(Candidate& candidate) const {
     const Terrain& ground = lanes_[candidate.lane].view.ground().terrain();
-    const auto dig =
-        dig_of_path(machine_, simulator_, ground, candidate.path, cycle_of(candidate.path));
+    const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle_of(candidate));
     if (const auto* planned = std::get_if<PlannedDig>(&dig))
       candidate.worth = planned->payload_mass / cost(*planned);
   }
@@ -442,21 +481,22 @@ class StepSearch {
   std::optional<StepDig> confirm(const Candidate& candidate, Aim aim) const {
     const LaneView& view = lanes_[candidate.lane].view;
     const Terrain& ground = view.ground().terrain();
-    auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle_of(candidate.path));
+    auto dug = dig_to_rest(machine_, simulator_, ground, candidate.path, cycle_of(candidate));
     auto* found = std::get_if<SimulatedDig>(&dug);
     if (found == nullptr) return std::nullopt;
     StepDig step;
-    step.lane = task_.lanes[candidate.lane];
+    const WorkLine& line = lanes_[candidate.lane].line;
+    step.turned = line.turned;
+    step.lane = line.lane;
     step.path = candidate.path;
     step.dig = found->dig;
     if (task_.carried > 0.0 && step.dig.payload_volume > capacity_) return std::nullopt;
-    step.change = view.change(
-        found->result.patch, {task_.slack, task_.settings.design.tolerance, task_.far - wall_from});
+    step.change = view.change(found->result.patch,
+                              {task_.slack, task_.settings.design.tolerance, line.far - wall_from});
     const double gain = gain_of(step, aim);
     if (step.change.touched > most_touched) return std::nullopt;
     if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;
-    const auto in_hard =
-        dig_of_path(machine_, hard_, ground, candidate.path, cycle_of(candidate.path));
+    const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle_of(candidate));
     const auto* hard = std::get_if<PlannedDig>(&in_hard);
     step.may_stall = hard == nullptr;
     step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
@@ -467,13 +507,23 @@ class StepSearch {
     return step;
   }
 
+  /// In a wide design of what the bucket lifts: what it pushes aside is lifted from another lane.
+  double gained_by(const StepDig& step) const {
+    return task_.is_wide ? step.dig.payload_volume / bulking() : step.change.gained;
+  }
+
+  /// Of the bank, as it is dug.
+  double bulking() const {
+    return (1.0 + simulator_.loose().void_ratio) / (1.0 + simulator_.bank().void_ratio);
+  }
+
   /// Volume of the design that a dig gains, less what it spoils.
   double gain_of(const StepDig& step, Aim aim) const {
     const ShapeChange& change = step.change;
     const double deep_price = aim == Aim::shape ? 1.0 : too_deep_price;
     const double spoiled = deep_price * change.too_deep + spill_price * change.spilled;
     if (aim == Aim::wall) return change.gained + wall_worth * change.at_end - spoiled;
-    if (aim != Aim::shape) return change.gained - spoiled;
+    if (aim != Aim::shape) return gained_by(step) - spoiled;
     return std::max(change.shaped, cleared_worth * change.cleared) - spoiled;
   }
 
@@ -482,7 +532,8 @@ class StepSearch {
     const ShapeChange& change = step.change;
     if (aim == Aim::shape)
       return change.finished > least_finished || change.cleared > least_cleared;
-    if (aim == Aim::volume) return change.gained > least_gain * capacity_;
+    if (aim == Aim::volume)
+      return gained_by(step) > (task_.bench ? least_on_bench : least_gain) * capacity_;
     if (aim == Aim::hard) return change.gained > least_in_hard * capacity_;
     if (task_.finishing) return change.at_end > least_lifted;
     return change.gained + change.at_end > least_at_wall * capacity_;
@@ -508,6 +559,11 @@ SoilKind with_strength(SoilKind soil, double factor) {
 bool can_hold_load(const SoilKind& soil, const DigPath& path) {
   const double floor = path.parameters.penetration_angle + path.heel_clearance;
   return floor <= holding * soil.angle_of_repose;
+}
+
+DumpPlace seen_from(DumpPlace dump, double turned) {
+  dump.swing = wrapped(dump.swing - turned);
+  return dump;
 }
 
 CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load, double carried) {

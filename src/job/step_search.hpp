@@ -10,6 +10,7 @@
 
 #include "job/dump_place.hpp"
 #include "job/job_learning.hpp"
+#include "job/job_stations.hpp"
 #include "job/lane_view.hpp"
 
 /// @file
@@ -25,12 +26,12 @@ struct StepTask {
   BasePose base;  ///< with the height that its edge keeps in truth
   DumpPlace dump;
   const std::vector<DigStart>& barren;  ///< digs that lifted much less than foretold
-  std::vector<double> lanes = {};       ///< beside the swing axis [m]
-  double near = 0.0;                    ///< from the swing axis to the nearest part of the work [m]
-  double far = 0.0;                     ///< to the farthest [m]
-  bool ends_at_wall = false;            ///< there, the design ends
+  std::vector<WorkLine> lines = {};     ///< to dig along
   bool may_risk = false;                ///< a stall, to take off that end
-  double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
+  double slack = 0.0;  ///< so far below the design ground does not count as too deep [m]
+  /// A layer of a wide design is dug off before what is below this height of the site [m].
+  std::optional<double> bench = {};
+  bool is_wide = false;           ///< soil that leaves its lane for another one is no loss
   bool finishing = false;         ///< along the floor, for its shape
   bool keeps_load = false;        ///< a load that the bucket can keep is not dumped
   double carried = 0.0;           ///< loose, in the bucket [m^3]
@@ -43,9 +44,10 @@ struct StepTask {
 
 /// A dig, with what it does to the shape of the ground.
 struct StepDig {
-  double lane = 0.0;  ///< [m]
-  DigPath path;       ///< in the frame of the lane, with its approach
-  PlannedDig dig;     ///< with its cycle
+  double turned = 0.0;  ///< WorkLine [rad]
+  double lane = 0.0;    ///< likewise [m]
+  DigPath path;         ///< in the frame of the line, with its approach
+  PlannedDig dig;       ///< with its cycle
   ShapeChange change;
   StrengthSigns signs;
   bool may_stall = false;  ///< if the soil is as strong as StepTask::hard_factor
@@ -57,6 +59,9 @@ std::optional<StepDig> best_dig(const StepTask& task);
 
 /// Whether soil stays in the bucket where the dig begins.
 bool can_hold_load(const SoilKind& soil, const DigPath& path);
+
+/// The same place, from a line so far to the left of the machine's view [rad].
+DumpPlace seen_from(DumpPlace dump, double turned);
 
 /// What follows a dig: back to the next one with the load, or over the dump.
 /// @param carried  before it [kg]

@@ -17,6 +17,7 @@
 #include "job/job_stations.hpp"
 #include "job/lane_view.hpp"
 #include "job/lookout.hpp"
+#include "job/station_place.hpp"
 #include "job/step_search.hpp"
 #include "job/trench_job.hpp"
 #include "support/errors.hpp"
@@ -99,12 +100,107 @@ TEST(JobStations, LanesCoverTheWidth) {
       for (const double lane : station.lanes) {
         right = std::min(right, lane - half);
         left = std::max(left, lane + half);
-        EXPECT_LE(std::abs(lane - station.beside), 0.34);
+        EXPECT_LE(std::abs(lane - station.beside), station.is_wide ? 1.0 : 0.34);
       }
     }
     EXPECT_NEAR(right, frame.right, 0.05) << width;
     EXPECT_NEAR(left, frame.left, 0.05) << width;
   }
+}
+
+TEST(JobStations, AWideDesignIsWorkedFromFewPlaces) {
+  const HandMadeJob narrow(10.0, 1.2), wide(10.0, 3.6);
+  const auto rows = stations_of(narrow.frame(), narrow.settings).size();
+  const auto stations = stations_of(wide.frame(), wide.settings);
+  EXPECT_LE(stations.size(), 2 * rows);
+  EXPECT_GT(stations.size(), rows);
+  for (const JobStation& each : stations) EXPECT_TRUE(each.is_wide);
+}
+
+TEST(JobStations, AFanOfPlanesReachesLanesThatAreTooFarAside) {
+  const HandMadeJob job(10.0, 3.6);
+  const Machine& machine = job.settings.site.machine;
+  JobStation station = stations_of(job.frame(), job.settings).front();
+  const auto straight =
+      work_lines(job.frame(), station, machine, {station.along, station.beside}, false);
+  EXPECT_EQ(straight.size(), station.lanes.size());
+  // From so far to the right they all lie to the left.
+  const Eigen::Vector2d at(station.along, station.lanes.front() - 2.0);
+  const auto fan = work_lines(job.frame(), station, machine, at, false);
+  ASSERT_GT(fan.size(), 3U);
+  double least = 1.0, most = 0.0;
+  for (const WorkLine& line : fan) {
+    EXPECT_EQ(line.lane, 0.0);
+    EXPECT_GE(line.near * std::cos(line.turned), straight.front().near - 1e-9);
+    EXPECT_GT(line.far, line.near);
+    least = std::min(least, line.turned);
+    most = std::max(most, line.turned);
+  }
+  EXPECT_NEAR(std::tan(least), 2.0 / straight.front().far, 0.01);
+  EXPECT_GT(most, least + 0.2);
+  EXPECT_TRUE(work_lines(job.frame(), station, machine, at, true).empty());
+}
+
+struct StandingJob : HandMadeJob {
+  StandingJob() : HandMadeJob(10.0, 3.6) {
+    // Over ground before the machine alone.
+    settings.design.dump_areas = {{DumpArea::Kind::windrow, box(-6.0, 3.0, 14.0, 8.0)}};
+    first = ground;
+    station = stations_of(frame(), settings).back();
+  }
+  std::optional<JobStation> nearest() const {
+    const JobMap of_design = map();
+    return nearest_place({settings, of_design, first, ground}, frame(), station);
+  }
+  Eigen::Vector2d at(const JobStation& there) const {
+    return frame().place(there.along, there.beside);
+  }
+  Terrain first;
+  JobStation station;
+};
+
+TEST(StationPlace, IsTheStationIfNothingIsInItsWay) {
+  const StandingJob job;
+  const auto place = job.nearest();
+  ASSERT_TRUE(place);
+  EXPECT_EQ(job.at(*place), job.at(job.station));
+}
+
+TEST(StationPlace, MovesAsideWhereSomethingStands) {
+  StandingJob job;
+  const Eigen::Vector2d at = job.at(job.station);
+  job.settings.design.obstacles = {
+      {"pole", box(at.x() - 0.1, at.y() - 2.2, at.x() + 0.1, at.y() - 2.0), 5.0}};
+  const auto place = job.nearest();
+  ASSERT_TRUE(place);
+  const double shift = (job.at(*place) - at).norm();
+  EXPECT_GT(shift, 0.1);
+  EXPECT_LT(shift, 1.0);
+  EXPECT_EQ(place->lanes, job.station.lanes);
+}
+
+TEST(StationPlace, IsNotOnGroundThatWasDug) {
+  StandingJob job;
+  const Eigen::Vector2d at = job.at(job.station);
+  for_each_cell(job.ground.bank.z, [&](Cell cell) {
+    if (job.ground.bank.x(cell.col) > at.x() + 1.0) job.ground.bank.z(cell.row, cell.col) -= 0.4;
+  });
+  const auto place = job.nearest();
+  ASSERT_TRUE(place);
+  EXPECT_LT(job.at(*place).x(), at.x() - 0.9);
+  job.ground.bank.z -= 0.4;
+  EXPECT_FALSE(job.nearest());
+}
+
+TEST(StationPlace, MovesToWhereTheTruckIsWithinReach) {
+  StandingJob job;
+  job.settings.design.dump_areas.clear();
+  const Eigen::Vector2d at = job.at(job.station);
+  job.settings.design.truck =
+      JobTruck{box(at.x() - 3.0, at.y() + 6.5, at.x() + 3.0, at.y() + 9.0), 2.0, 9000.0};
+  const auto place = job.nearest();
+  ASSERT_TRUE(place);
+  EXPECT_GT(job.at(*place).y(), at.y() + 0.3);
 }
 
 TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
@@ -381,9 +477,7 @@ std::optional<StepDig> dig_in_soil(const HandMadeJob& job, double strength) {
   const JobMap map = job.map();
   const std::vector<DigStart> barren;
   StepTask task{job.settings, map, job.ground, base, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, barren};
-  task.lanes = {-0.11, 0.11};
-  task.near = 2.95;
-  task.far = 6.0;
+  task.lines = {{0.0, -0.11, 2.95, 6.0}, {0.0, 0.11, 2.95, 6.0}};
   task.strength_factor = strength;
   task.hard_factor = 1.3 * strength;
   task.slack = 0.015;
@@ -414,6 +508,48 @@ TEST(DumpPlace, ATruckIsLoadedFromAboveItsBed) {
   EXPECT_GT(place->place.z(), 1.5 + job.settings.site.machine.bucket_length);
   const BasePose far = {-8.0, 0.0, 0.0, 0.0};
   EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, far));
+}
+
+TEST(DumpPlace, ATruckIsLoadedWhereverInItsBedTheFrontReaches) {
+  HandMadeJob job;
+  job.settings.design.truck = JobTruck{box(2.0, 3.0, 14.0, 5.4), 1.5, 9000.0};
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};  // the middle of the bed is 6.5 m away
+  const auto place = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(place);
+  EXPECT_GT(place->place.y(), 3.4);
+  EXPECT_LT(place->place.y(), 5.0);
+  EXPECT_GT(place->place.x(), 2.4);
+  EXPECT_LT(std::hypot(place->place.x() - 3.0, place->place.y()), 6.5);
+  job.settings.design.truck->bed_height = 4.0;
+  EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, {3.0, -2.2, 0.0, 0.0}));
+}
+
+TEST(DumpPlace, OfAnAreaThatIsTooSmallTheLeastRunsOut) {
+  HandMadeJob job;
+  const SitePolygon area = box(2.0, 3.4, 5.0, 4.8);  // narrower than a heap
+  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, area}};
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  const auto place = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->place.y(), 4.1, 0.3) << "midway";
+  // Nothing of it may come near a manhole there.
+  job.settings.design.keep_out = {{"manhole", box(2.0, 4.4, 3.4, 4.8), {}}};
+  const auto beside = dump_place(job.settings, job.map(), job.ground, base);
+  ASSERT_TRUE(beside);
+  EXPECT_GT(beside->place.x(), 3.4 + 0.3);
+  // Nor into the cut.
+  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(2.0, 0.6, 5.0, 1.3)}};
+  EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
+}
+
+TEST(LaneView, NothingIsCutBelowABench) {
+  HandMadeJob job;
+  LaneView view(job.ground, job.map(), dig_line({0.0, 0.0, 0.0, 0.0}), {-2.0, -2.0, 12.0, 2.0},
+                job.settings.site.machine.bucket.width_outside);
+  const double all = view.excess(0.0).sum();
+  view.keep_above(-0.2);
+  EXPECT_NEAR(view.floor(0.0)(3.0), -0.2, 1e-9);
+  EXPECT_NEAR(view.excess(0.0).sum(), 0.4 * all, 0.01 * all);
 }
 
 TEST(LaneView, ItsFloorIsTheDesignAndAboveAKeepOut) {
@@ -488,7 +624,8 @@ TEST(LaneView, WhatIsPushedAsideIsNotOfThePassThatPushedIt) {
 TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   const TemporaryFolder folder;
   JobRecord record;
-  record.barren = {{0.12, 5.4}, {-0.12, 4.6}};
+  record.barren = {{0.12, 5.4}, {-0.12, 4.6, 0.3}};
+  record.bench = 2;
   record.passes_here = 3;
   record.carried = CarriedLoad{0.07, {0.1, 0.2, -0.3, 0.4}};
   record.looks = {{{0.6, 0.7, 3.0}, 0.1, 0.5, 12.0, 0.8}, usual_looks().front()};
@@ -499,6 +636,8 @@ TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   ASSERT_EQ(read.barren.size(), 2U);
   EXPECT_EQ(read.barren[1].lane, -0.12);
   EXPECT_EQ(read.barren[1].along, 4.6);
+  EXPECT_EQ(read.barren[1].turned, 0.3);
+  EXPECT_EQ(read.bench, 2);
   EXPECT_EQ(read.passes_here, 3);
   ASSERT_TRUE(read.carried.has_value());
   EXPECT_EQ(read.carried->volume, 0.07);

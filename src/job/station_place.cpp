@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "job/station_place.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/plan_geometry.hpp"
+#include "job/dump_place.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Vector2d;
+
+// Numbers of our own choice [m].
+constexpr double off_cut = 0.3;       // of the tracks from ground that was dug
+constexpr double deepest_rut = 0.15;  // more is dug
+constexpr double highest_soil = 0.2;  // under the tracks
+constexpr double off_tail = 0.3;      // of what stands there
+constexpr double shift_step = 0.4;    // between the places that are looked at
+constexpr int most_along = 3;         // steps
+constexpr int most_beside = 9;        // likewise
+
+double surface(const Terrain& ground, Cell at) {
+  return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col);
+}
+
+double distance_to(const SitePolygon& polygon, const Vector2d& from) {
+  double least = is_inside(polygon, from) ? 0.0 : (polygon.front() - from).norm();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d& a = polygon[i];
+    const Vector2d along = polygon[(i + 1) % polygon.size()] - a;
+    const double share = along.dot(from - a) / std::max(along.squaredNorm(), 1e-12);
+    least = std::min(least, (a + std::clamp(share, 0.0, 1.0) * along - from).norm());
+  }
+  return least;
+}
+
+bool is_tail_clear(const JobSettings& settings, const Vector2d& at) {
+  const double tail = settings.site.machine.tail_swing_radius() + off_tail;
+  const auto& obstacles = settings.design.obstacles;
+  if (settings.design.truck && distance_to(settings.design.truck->bed, at) < tail) return false;
+  return std::all_of(obstacles.begin(), obstacles.end(), [&](const JobObstacle& each) {
+    return distance_to(each.polygon, at) >= tail;
+  });
+}
+
+}  // namespace
+
+bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& station) {
+  if (!is_tail_clear(on.settings, frame.place(station.along, station.beside))) return false;
+  bool free = true;
+  const auto& machine = on.settings.site.machine;
+  for_each_under({frame, station, machine, off_cut}, on.map.target, [&](const auto& cell) {
+    if (!cell) return;
+    free &= !(surface(on.first, *cell) - surface(on.now, *cell) > deepest_rut);
+  });
+  for_each_under({frame, station, machine}, on.map.target, [&](const auto& cell) {
+    free &= cell && !on.map.untouched(cell->row, cell->col) &&
+            !(surface(on.now, *cell) - surface(on.first, *cell) > highest_soil);
+  });
+  return free;
+}
+
+std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& frame,
+                                        const JobStation& station) {
+  std::vector<std::pair<double, Vector2d>> shifts;
+  for (int i = -most_along; i <= most_along; ++i) {
+    for (int k = -most_beside; k <= most_beside; ++k) {
+      const Vector2d shift = shift_step * Vector2d(i, k);
+      shifts.emplace_back(shift.norm(), shift);
+    }
+  }
+  std::stable_sort(shifts.begin(), shifts.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [away, shift] : shifts) {
+    JobStation moved = station;
+    moved.along += shift.x();
+    moved.beside += shift.y();
+    if (!can_stand_now(on, frame, moved)) continue;
+    const BasePose base = base_at(frame, moved, on.now, on.settings.site.machine);
+    if (dump_place(on.settings, on.map, on.now, base)) return moved;
+  }
+  return std::nullopt;
+}
+
+}  // namespace excavplan

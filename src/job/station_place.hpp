@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_settings.hpp>
+
+#include "job/job_map.hpp"
+#include "job/job_stations.hpp"
+
+/// @file
+/// Where the machine can stand as the ground is now. Private to the project.
+
+namespace excavplan {
+
+/// What tells where a machine can stand.
+struct Standing {
+  const JobSettings& settings;
+  const JobMap& map;
+  const Terrain& first;  ///< before the job
+  const Terrain& now;    ///< on the same grid
+};
+
+/// Whether the tracks stand on ground that nothing was dug from or laid on, off what must not be
+/// touched, and the tail swings clear of obstacles and of the truck.
+bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& station);
+
+/// The place nearest to that of a station where the machine can stand and its soil has a place.
+std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& frame,
+                                        const JobStation& station);
+
+}  // namespace excavplan
