@@ -27,9 +27,11 @@ constexpr double off_keep_out = 0.3;   // likewise from keep-outs, as heaps run 
 constexpr double outside_price = 10.0;  // of a bucket beside the dump areas, as a swing [rad]
 constexpr double inside_bed = 0.5;      // of a truck's border, so that the load falls in [m]
 constexpr double spare_reach = 0.1;     // of what the joints allow [m]
-constexpr double heap_step = 0.1;       // between the places of a heap that are looked at [m]
+constexpr double most_outside = 0.8;    // share of a bucket beside the dump areas
+constexpr double area_run = 1.0;        // of soil into an area from beside it [m]
+constexpr double heap_step = 0.15;      // between the places of a heap that are looked at [m]
 constexpr double farthest_run = 3.0;    // of soil from where it falls [m]
-constexpr int halvings = 10;            // of the range in which the top of a heap lies
+constexpr int halvings = 7;             // of the range in which the top of a heap lies
 
 /// Height of the cone of a bucket of soil.
 double heap_height(const JobSettings& settings) {
@@ -79,9 +81,9 @@ double pin_reach(const Machine& machine, double height) {
 
 /// Visits the places within reach, with the way to the left that the machine swings to them [rad].
 template <typename Visit>
-void for_each_place(const Machine& machine, const BasePose& base, Visit visit) {
+void for_each_place(const Machine& machine, const BasePose& base, double spare, Visit visit) {
   const double reach = machine.boom_length + machine.arm_length;
-  for (double radius = nearest * reach; radius <= farthest * reach; radius += radius_step) {
+  for (double radius = nearest * reach; radius <= farthest * reach - spare; radius += radius_step) {
     for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
       if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
       const double heading = base.heading + turn;
@@ -92,11 +94,11 @@ void for_each_place(const Machine& machine, const BasePose& base, Visit visit) {
 }
 
 std::optional<DumpPlace> in_truck(const JobSettings& settings, const Terrain& ground,
-                                  const BasePose& base) {
+                                  const BasePose& base, double spare) {
   const JobTruck& truck = *settings.design.truck;
   const Machine& machine = settings.site.machine;
   std::optional<DumpPlace> best;
-  for_each_place(machine, base, [&](const Vector2d& place, double turn) {
+  for_each_place(machine, base, spare, [&](const Vector2d& place, double turn) {
     if (best && std::abs(turn) >= std::abs(best->swing)) return;
     if (!is_well_in(truck.bed, place, inside_bed)) return;
     const auto at = cell_at(ground.bank, place.x(), place.y());
@@ -187,23 +189,36 @@ class HeapLayer {
   double volume_;
 };
 
+bool is_near_area(const JobMap& map, const Vector2d& place) {
+  constexpr int ways = 8;
+  for (int i = 0; i <= ways; ++i) {
+    const double angle = 2.0 * pi * i / ways, away = i < ways ? area_run : 0.0;
+    const auto at =
+        cell_at(map.target, place.x() + away * std::cos(angle), place.y() + away * std::sin(angle));
+    if (at && map.dump(at->row, at->col)) return true;
+  }
+  return false;
+}
+
 /// Where the least of a bucket comes to lie beside the areas.
 std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap& map,
-                                       const Terrain& ground, const BasePose& base) {
+                                       const Terrain& ground, const BasePose& base, double spare) {
   const Machine& machine = settings.site.machine;
   const HeapLayer layer(settings, map, ground);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(machine, base, [&](const Vector2d& place, double turn) {
+  for_each_place(machine, base, spare, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
-    if (!at || !map.dump(at->row, at->col) || std::isnan(ground.bank.z(at->row, at->col))) return;
+    if (!at || std::isnan(ground.bank.z(at->row, at->col)) || !is_near_area(map, place)) return;
     if (std::abs(turn) >= least) return;
     const Heap heap = layer.lay(place);
     const double pin = heap.top + drop + machine.bucket_length;
     const double away = std::hypot(place.x() - base.x, place.y() - base.y);
     const double cost = outside_price * heap.outside + std::abs(turn) +
                         height_price * std::max(0.0, heap.top - base.z);
-    if (!heap.is_allowed || cost >= least || away > pin_reach(machine, pin - base.z)) return;
+    if (!heap.is_allowed || heap.outside > most_outside || cost >= least ||
+        away > pin_reach(machine, pin - base.z))
+      return;
     least = cost;
     best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
   });
@@ -213,14 +228,14 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
 }  // namespace
 
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
-                                    const Terrain& ground, const BasePose& base) {
-  if (settings.design.truck) return in_truck(settings, ground, base);
+                                    const Terrain& ground, const BasePose& base, double spare) {
+  if (settings.design.truck) return in_truck(settings, ground, base, spare);
   const Machine& machine = settings.site.machine;
   const double repose = std::tan(settings.site.soil.angle_of_repose);
   const double cone = heap_height(settings);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(machine, base, [&](const Vector2d& place, double turn) {
+  for_each_place(machine, base, spare, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (!at || !map.dump(at->row, at->col)) return;
     const double loose = ground.loose(at->row, at->col);
@@ -232,7 +247,7 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
     const double pin = surface + cone + drop + machine.bucket_length;
     best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
   });
-  return best ? best : least_outside(settings, map, ground, base);
+  return best ? best : least_outside(settings, map, ground, base, spare);
 }
 
 }  // namespace excavplan

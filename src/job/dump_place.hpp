@@ -26,8 +26,10 @@ struct DumpPlace {
 
 /// The place of the dump areas, or the truck, with the least swing from where the machine stands,
 /// where a bucket of soil stays within the area; where none does, that from which least runs out.
+/// @param spare  of the reach that is not used [m]
 /// @return nothing if none is within reach
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
-                                    const Terrain& ground, const BasePose& base);
+                                    const Terrain& ground, const BasePose& base,
+                                    double spare = 0.0);
 
 }  // namespace excavplan

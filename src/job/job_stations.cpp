@@ -82,6 +82,21 @@ std::vector<double> lanes_of(const JobStation& station, bool finishing) {
   return all;
 }
 
+/// On which side of the design the soil goes, so that the other is dug first, while what is laid is
+/// low and within reach: 1 to the left, -1 to the right, 0 on both or ahead.
+double side_of_soil(const JobFrame& frame, const JobDesign& design) {
+  Eigen::AlignedBox1d beside;
+  const auto look = [&](const SitePolygon& area) {
+    for (const Eigen::Vector2d& corner : area) beside.extend(frame.of(corner).tail<1>());
+  };
+  for (const DumpArea& area : design.dump_areas) look(area.polygon);
+  if (design.truck) look(design.truck->bed);
+  if (beside.isEmpty()) return 0.0;
+  const double middle = 0.5 * (frame.left + frame.right);
+  if (beside.min()(0) > middle) return 1.0;
+  return beside.max()(0) < middle ? -1.0 : 0.0;
+}
+
 double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
 double at_reach(const Machine& machine, double share) {
   return machine.boom_pin.x() + share * machine.full_length();
@@ -108,12 +123,14 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
   const auto groups = is_wide ? wide_groups_of(lanes_of_all) : groups_of(lanes_of_all);
+  const double soil = side_of_soil(frame, settings.design);
+  // Else every other time from the other side: the machine need not go back across.
+  const auto starts_left = [&](int row) { return soil == 0.0 ? row % 2 == 1 : soil < 0.0; };
   std::vector<JobStation> stations;
   for (int i = 0; i <= more; ++i) {
     const double along = more == 0 ? first : first + (last - first) * i / more;
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      // Every other time from the other side: the machine need not go back across.
-      const auto& lanes = groups[i % 2 == 0 ? g : groups.size() - 1 - g];
+      const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
       stations.push_back({along, 0.5 * (lanes.front() + lanes.back()), lanes});
       stations.back().is_wide = is_wide;
     }

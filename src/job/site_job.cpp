@@ -41,6 +41,7 @@ constexpr int most_passes = 16;              // along the floor from one station
 constexpr int most_fruitless = 6;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
+constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
 constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
 constexpr double most_undug = 0.3;           // share of such cells where passes pay
@@ -182,6 +183,7 @@ struct SiteJob::State {
   StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
   JobStep move_step(const JobStation& station);
   JobStep leave();
+  std::optional<JobStation> place_to_dump_from() const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
   bool has_shape(const JobProgress& now) const {
     return now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
@@ -502,8 +504,22 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
   return nearest_place({settings, map, first, ground.expected()}, frame_at(station), station);
 }
 
+/// Another place for the present station, if its soil has no place any more.
+std::optional<JobStation> SiteJob::State::place_to_dump_from() const {
+  const JobStation& station = stations[record.station];
+  if (!record.has_arrived || !station.is_wide) return std::nullopt;
+  if (dump_place(settings, map, ground.expected(), record.base)) return std::nullopt;
+  const JobFrame line = frame_at(station);
+  const auto place = nearest_place({settings, map, first, ground.expected()}, line, station);
+  if (!place) return place;
+  const Eigen::Vector2d off =
+      line.of({record.base.x, record.base.y}) - Eigen::Vector2d(place->along, place->beside);
+  return off.norm() > same_place ? place : std::nullopt;
+}
+
 /// To the next place from which there is something to do, or the end.
 JobStep SiteJob::State::leave() {
+  if (const auto place = place_to_dump_from()) return move_step(*place);
   const JobProgress now = progress();
   learn_floor();
   const bool looked_in_vain = stations[record.station].is_lookout() &&

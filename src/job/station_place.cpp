@@ -20,6 +20,7 @@ constexpr double off_cut = 0.3;       // of the tracks from ground that was dug
 constexpr double deepest_rut = 0.15;  // more is dug
 constexpr double highest_soil = 0.2;  // under the tracks
 constexpr double off_tail = 0.3;      // of what stands there
+constexpr double spare_reach = 0.5;   // to the dump, since what is laid there grows
 constexpr double shift_step = 0.4;    // between the places that are looked at
 constexpr int most_along = 3;         // steps
 constexpr int most_beside = 9;        // likewise
@@ -76,15 +77,17 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
   }
   std::stable_sort(shifts.begin(), shifts.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::optional<JobStation> meagre;
   for (const auto& [away, shift] : shifts) {
     JobStation moved = station;
     moved.along += shift.x();
     moved.beside += shift.y();
     if (!can_stand_now(on, frame, moved)) continue;
     const BasePose base = base_at(frame, moved, on.now, on.settings.site.machine);
-    if (dump_place(on.settings, on.map, on.now, base)) return moved;
+    if (dump_place(on.settings, on.map, on.now, base, spare_reach)) return moved;
+    if (!meagre && dump_place(on.settings, on.map, on.now, base)) meagre = moved;
   }
-  return std::nullopt;
+  return meagre;
 }
 
 }  // namespace excavplan

@@ -537,6 +537,12 @@ TEST(DumpPlace, OfAnAreaThatIsTooSmallTheLeastRunsOut) {
   const auto beside = dump_place(job.settings, job.map(), job.ground, base);
   ASSERT_TRUE(beside);
   EXPECT_GT(beside->place.x(), 3.4 + 0.3);
+  // What cannot be laid within is laid so that some of it runs in.
+  job.settings.design.keep_out = {};
+  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(2.0, 1.2, 5.0, 1.8)}};
+  const auto past = dump_place(job.settings, job.map(), job.ground, {-0.5, 0.0, 0.0, 0.0});
+  ASSERT_TRUE(past);
+  EXPECT_GT(past->place.y(), 1.8);
   // Nor into the cut.
   job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(2.0, 0.6, 5.0, 1.3)}};
   EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
