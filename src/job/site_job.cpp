@@ -36,6 +36,8 @@ constexpr double allowance = 0.5;       // over the design, in tolerances: what 
 constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
 constexpr double most_allowance = 0.8;  // of passes to that end, likewise
 constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
+constexpr double least_allowance = -0.4;     // likewise
+constexpr double most_of_floor = 0.5;        // in tolerances: else passes did not come so far
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 16;              // along the floor from one station
 constexpr int most_fruitless = 6;            // passes in succession that took nothing off
@@ -453,15 +455,15 @@ void SiteJob::State::learn_floor() {
       above.push_back(error);
   });
   if (above.size() < least_of_floor) return;
-  const double left = median(above) - allowance_of_passes();
-  if (std::abs(left) > settings.design.tolerance) return;  // it is not in shape
-  record.learning.floor.learn(left, floor_reading_sd * floor_reading_sd);
+  const double lies = median(above);
+  if (std::abs(lies) > most_of_floor * settings.design.tolerance) return;  // it is not in shape
+  record.learning.floor.learn(lies - allowance_of_passes(), floor_reading_sd * floor_reading_sd);
 }
 
 /// So that the middle of what they leave lies where it should.
 double SiteJob::State::allowance_of_passes() const {
   const double tolerance = settings.design.tolerance;
-  return std::clamp(middle * tolerance - record.learning.floor.mean, -most_allowance * tolerance,
+  return std::clamp(middle * tolerance - record.learning.floor.mean, least_allowance * tolerance,
                     most_allowance * tolerance);
 }
 
