@@ -33,6 +33,7 @@ constexpr double level_from = 0.2;  // before the start of a dig, the ground who
 constexpr double level_to = 1.2;    // likewise [m]
 const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
                                           0.22, 0.32, 0.45};  // of the layer of a drag [m]
+constexpr double lowest = -100.0;                             // of a drag along the floor [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
@@ -61,6 +62,9 @@ const std::array<Attitude, 4> attitudes = {{{0.25, true}, {0.4, true}, {0.6, tru
 const std::array<Attitude, 5> wall_attitudes = {
     {{1.3, false}, {1.2, false}, {1.1, false}, {1.0, false}, {0.8, false}}};
 const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
+constexpr double steepest_floor = 0.15;                        // else it is a face [rad]
+constexpr double on_face = 0.2;                                // where its slope is told [m]
+const std::array<double, 2> steeper = {0.1, 0.3};              // of a dig than its face [rad]
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
 
@@ -199,8 +203,9 @@ class StepSearch {
   void lay_out(std::size_t lane) {
     if (task_.finishing) return lay_out_passes(lane);
     for (double start = task_.far; start > task_.near + start_step; start -= start_step) {
-      if (is_worth_a_dig(lanes_[lane], start))
-        lay_out_layers(lane, start, attitudes, rules_in(lane));
+      if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      lay_out_layers(lane, start, attitudes, rules_in(lane));
+      lay_out_face(lane, start);
     }
   }
 
@@ -213,6 +218,7 @@ class StepSearch {
     const double last = task_.near + least_pass * (task_.far - task_.near);
     for (double start = task_.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      lay_out_face(lane, start);
       if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
@@ -221,6 +227,31 @@ class StepSearch {
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
+      }
+    }
+  }
+
+  /// Down a face that falls towards the machine, and on along what lies before it.
+  void lay_out_face(std::size_t lane, double start) {
+    DigPathOptions rules = rules_in(lane);
+    rules.drag_keeps_angle = true;
+    const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
+    if (!(face > steepest_floor)) return;
+    const double down = std::max(0.0, lanes_[lane].ground(start) - rules.floor(start));
+    for (const double more : steeper) {
+      const double angle = face + more;
+      rules.drag_grade = face + 0.5 * more;
+      const double from = start - down / std::tan(angle);
+      const double longest = from - nearest(angle);
+      double last = 0.0;
+      for (const double fill : fills) {
+        const double drag =
+            task_.finishing
+                ? longest
+                : std::min(drag_that_fills(lanes_[lane], {from, lowest}, fill), longest);
+        if (drag == last || !(drag > shortest_drag)) break;
+        add(lane, {angle, 1.0, drag}, start, rules);
+        last = drag;
       }
     }
   }
