@@ -248,6 +248,7 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   task.ends_at_wall = range.ends_at_wall;
   task.may_risk = record.progress.stalls == 0;
   task.finishing = finishing;
+  task.has_faces = frame.is_battered;
   task.keeps_load = finishing && may_keep(0.0);
   task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;

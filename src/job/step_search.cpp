@@ -62,6 +62,7 @@ const std::array<Attitude, 4> attitudes = {{{0.25, true}, {0.4, true}, {0.6, tru
 const std::array<Attitude, 5> wall_attitudes = {
     {{1.3, false}, {1.2, false}, {1.1, false}, {1.0, false}, {0.8, false}}};
 const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
+constexpr double steepest_drag = 1.0;                          // down a face [rad]
 constexpr double steepest_floor = 0.15;                        // else it is a face [rad]
 constexpr double on_face = 0.2;                                // where its slope is told [m]
 const std::array<double, 2> steeper = {0.1, 0.3};              // of a dig than its face [rad]
@@ -233,6 +234,7 @@ class StepSearch {
 
   /// Down a face that falls towards the machine, and on along what lies before it.
   void lay_out_face(std::size_t lane, double start) {
+    if (!task_.has_faces) return;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
     const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
@@ -241,6 +243,7 @@ class StepSearch {
     for (const double more : steeper) {
       const double angle = face + more;
       rules.drag_grade = face + 0.5 * more;
+      if (rules.drag_grade > steepest_drag) break;
       const double from = start - down / std::tan(angle);
       const double longest = from - nearest(angle);
       double last = 0.0;

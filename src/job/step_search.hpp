@@ -31,6 +31,7 @@ struct StepTask {
   bool may_risk = false;                ///< a stall, to take off that end
   double slack = 0.0;             ///< so far below the design ground does not count as too deep [m]
   bool finishing = false;         ///< along the floor, for its shape
+  bool has_faces = false;         ///< some of the design is neither floor nor wall
   bool keeps_load = false;        ///< a load that the bucket can keep is not dumped
   double carried = 0.0;           ///< loose, in the bucket [m^3]
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]

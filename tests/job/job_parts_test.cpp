@@ -221,10 +221,23 @@ TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
   task.near = range.far - 1.5;  // the face and its foot
   task.far = range.far;
   task.finishing = true;
+  task.has_faces = true;
   const auto dig = best_dig(task);
   ASSERT_TRUE(dig.has_value());
   EXPECT_GT(dig->change.cleared, 0.6 * left * 0.7 * 0.6);
   EXPECT_LT(dig->change.too_deep, 0.005);
+}
+
+TEST(StepSearch, NoDragGoesDownAWall) {
+  const HandMadeJob job;
+  const JobMap map = job.map();
+  StepTask task{
+      job.settings, map, job.ground, {4.3, 0.0, 0.0, 0.0}, {{5.0, 3.0, 2.4}, 0.6, 2.4, false}, {}};
+  task.lanes = {0.1};
+  task.near = 2.95;
+  task.far = 5.67;
+  task.has_faces = true;
+  EXPECT_TRUE(best_dig(task).has_value());
 }
 
 TEST(JobFrame, ReversedIsTheSameDesignFromItsOtherEnd) {
