@@ -235,7 +235,7 @@ TEST(StepSearch, NoDragGoesDownAWall) {
       job.settings, map, job.ground, {4.3, 0.0, 0.0, 0.0}, {{5.0, 3.0, 2.4}, 0.6, 2.4, false}, {}};
   task.lanes = {0.1};
   task.near = 2.95;
-  task.far = 5.67;
+  task.far = 5.75;  // just beyond the end
   task.has_faces = true;
   EXPECT_TRUE(best_dig(task).has_value());
 }
