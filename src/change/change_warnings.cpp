@@ -204,7 +204,7 @@ void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
 }
 
 /// Of errors that neighbouring ground shares.
-void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
+void warn_of_bends(const Area& area, double pattern_sd, std::vector<Warning>& warnings) {
   constexpr double noted = 0.010;  // ours: of errors that were taken off [m]
   constexpr double most = 0.010;   // ours: of those left; below it volumes hardly suffer [m]
   constexpr double most_of_mean = 0.0025;  // ours: of the mean of 1 m^2, as 10 mm over 0.1 m [m]
@@ -215,7 +215,9 @@ void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
                               "check the calibration of the sensor and how the scans were put "
                               "together");
   }
+  constexpr double explained = 3.0;  // ours: deviations of what one scan is stated to err by
   const double left = std::sqrt(area.noise.correlated);
+  if (left <= explained * pattern_sd) return;
   const double of_mean = left * std::min(1.0, std::sqrt(2.0 * pi) * area.noise.length);
   if (left > most && of_mean > most_of_mean) {
     warnings.emplace_back(
@@ -228,7 +230,7 @@ void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
   }
 }
 
-void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
+void warn_of_ground(const Area& area, double pattern_sd, std::vector<Warning>& warnings) {
   const ChangedGround& ground = area.ground;
   if (ground.stable_share < least_stable_share) {
     warnings.emplace_back(WarningCode::little_stable_ground,
@@ -249,7 +251,7 @@ void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
                               "`after_frame`, or leave out by `area` what moved between them");
     return;
   }
-  warn_of_bends(area, warnings);
+  warn_of_bends(area, pattern_sd, warnings);
 }
 
 // ---- Soil that slid back ------------------------------------------------------------------------
@@ -416,8 +418,8 @@ void warn_of_zones(const std::vector<Area>& areas, const ChangeOptions& options,
   warn_of_doubtful(doubtful_zones(areas, options, change), options, change.warnings);
 }
 
-void warn_of_scans(const Area& area, std::vector<Warning>& warnings) {
-  warn_of_ground(area, warnings);
+void warn_of_scans(const Area& area, const ChangeOptions& options, std::vector<Warning>& warnings) {
+  warn_of_ground(area, options.sensor_pattern_sd, warnings);
   warn_of_place(area, warnings);
   warn_of_doubt(area.place_before, "before", warnings);
   warn_of_doubt(area.place_after, "after", warnings);

@@ -33,7 +33,7 @@ void warn_of_zones(const std::vector<Area>& areas, const ChangeOptions& options,
 
 /// Of the scans of an area: little_stable_ground, scans_do_not_fit, systematic_errors,
 /// sensor_place_inferred, sensor_place_doubtful.
-void warn_of_scans(const Area& area, std::vector<Warning>& warnings);
+void warn_of_scans(const Area& area, const ChangeOptions& options, std::vector<Warning>& warnings);
 
 /// The warning of the largest of some objects: object_on_soil, object_taken_out.
 Warning object_warning(const ChangeZone& zone, const Object& object, std::size_t count);

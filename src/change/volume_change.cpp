@@ -44,7 +44,8 @@ void check(const ChangeOptions& options) {
           "positive and not above detection (" + number_text(options.detection) + ")");
   require(options.min_zone_area >= 0.0, "min_zone_area", options.min_zone_area, "0 or more");
   for (const auto& [name, value] :
-       {std::pair("margin", options.margin), std::pair("spill_distance", options.spill_distance)}) {
+       {std::pair("margin", options.margin), std::pair("spill_distance", options.spill_distance),
+        std::pair("sensor_pattern_sd", options.sensor_pattern_sd)}) {
     require(value >= 0.0, name, value, "0 or more");
     require(value <= farthest, name, value, "at most " + number_text(farthest) + " m");
   }
@@ -142,7 +143,7 @@ void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaCh
 }
 
 /// Enters the zones of one area into the result.
-void report(Area& area, VolumeChange& change) {
+void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   const int first = static_cast<int>(change.zones.size());
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
     const ZoneSum& sum = area.zones[i];
@@ -156,7 +157,7 @@ void report(Area& area, VolumeChange& change) {
     zone.extent = sum.extent;
     change.zones.push_back(zone);
   }
-  warn_of_scans(area, change.warnings);
+  warn_of_scans(area, options, change.warnings);
   AreaChange result;
   result.difference = std::move(area.grid);
   result.difference.z =
@@ -207,7 +208,7 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   set_deviations(change);
   if (change.cut) change.cut->bank = change.before;
   warn_of_zones(areas, options, change);
-  for (Area& area : areas) report(area, change);
+  for (Area& area : areas) report(area, options, change);
   return change;
 }
 

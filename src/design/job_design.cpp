@@ -123,6 +123,12 @@ class PlainSite {
                            truck.number("bed_height_m", 0.1, highest_thing),
                            truck.number("target_kg", 1.0, heaviest_load)};
     }
+    if (top_.states("sensor")) {
+      JsonObject sensor = top_.object("sensor");
+      job.sensor = SensorErrors{sensor.number_or("noise_sd_at_1m_m", 0.0, 0.0, 10.0),
+                                sensor.number_or("pattern_sd_at_1m_m", 0.0, 0.0, 10.0),
+                                sensor.number_or("range_power", 0.0, 0.0, 4.0)};
+    }
     return job;
   }
 

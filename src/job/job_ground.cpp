@@ -12,6 +12,7 @@
 
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "job/noisy_scan.hpp"
 #include "site/site_survey.hpp"
 
 namespace excavplan {
@@ -22,6 +23,11 @@ constexpr std::size_t least_cells = 40;  // of a cut that tells its height
 constexpr double least_cut = 0.01;       // of a cell that was cut [m]
 constexpr double steeper = 0.98;         // than the angle of repose by its tangent
 constexpr double most_off = 0.1;         // more is no error of tracking [m]
+constexpr double usual_range = 5.0;      // of a scan's points [m]
+constexpr double noisy = 0.5;            // of what they share, over the tolerance
+constexpr double changed = 0.003;        // by a dig [m]
+constexpr double dug_sd = 0.012;         // of what a bucket leaves [m]
+constexpr double risen_share = 0.5;      // likewise of what rose, over its height
 
 /// Of all that was cut, with the soil that lies on it again.
 std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
@@ -98,9 +104,22 @@ JobGround::JobGround(const std::string& folder, const JobSettings& settings)
 
 void JobGround::expect(const JobStep& step, double height_bias) {
   if (!step.moves_front()) return;
+  const Eigen::ArrayXXd before = expected_.bank.z + expected_.loose;
   if (step.dumps_first) heap(step, step.carried->volume);
   if (step.digs()) dig(step, height_bias);
+  doubt_changed(before);
   unseen_.push_back(step);
+}
+
+/// What was foretold is not as sure as what is seen.
+void JobGround::doubt_changed(const Eigen::ArrayXXd& before) {
+  for_each_cell(before, [&](Cell at) {
+    const double rise =
+        expected_.bank.z(at.row, at.col) + expected_.loose(at.row, at.col) - before(at.row, at.col);
+    if (!(std::abs(rise) > changed)) return;
+    sd_(at.row, at.col) =
+        std::fmax(sd_(at.row, at.col), dug_sd + risen_share * std::max(0.0, rise));
+  });
 }
 
 void JobGround::dig(const JobStep& step, double height_bias) {
@@ -128,8 +147,23 @@ std::size_t JobGround::unseen_digs(std::optional<JobAction> kind) const {
       [&](const JobStep& each) { return each.digs() && (!kind || each.what == *kind); }));
 }
 
-ScanNews JobGround::take_in(const SiteEvent& event) {
+bool JobGround::is_noisy() const {
+  const auto& sensor = settings_.design.sensor;
+  return sensor && sensor->shared * std::pow(usual_range, sensor->range_power) >
+                       noisy * settings_.design.tolerance;
+}
+
+double JobGround::sd_at(Cell at) const {
+  const double sd = is_noisy() ? sd_(at.row, at.col) : 0.0;
+  return std::isnan(sd) ? 0.0 : sd;
+}
+
+ScanNews JobGround::take_in(const SiteEvent& scanned) {
+  SiteEvent event = scanned;
+  const double shared = is_noisy() ? shared_height_sd(event.scan, *settings_.design.sensor) : 0.0;
+  event.options.change.sensor_pattern_sd = shared;
   const SiteUpdate update = site_.update(event);
+  if (shared > 0.0 && scanned_.seen.size() > 0) return take_in_noisy(event, update);
   const Terrain expected = std::move(expected_);
   const GroundState before = std::move(scanned_);
   const bool is_first = before.seen.size() == 0;
@@ -138,6 +172,7 @@ ScanNews JobGround::take_in(const SiteEvent& event) {
   const bool has_grown = !is_first && !same_grid(cells, site_.ground().terrain.bank);
   scanned_ = has_grown ? site_.ground_for({}, cells.extent(), cells.cell_size) : site_.ground();
   scanned_.terrain.doubts.clear();
+  if (is_first) scanned_.deviation.setConstant(std::nan(""));
   if (!is_first) {
     keep_unseen(expected, seen_, event.time, scanned_);
     keep_between(returns_in(event.scan, scanned_.terrain.bank), seen_, event.time, scanned_);
@@ -145,12 +180,37 @@ ScanNews JobGround::take_in(const SiteEvent& event) {
   hold_steep(settings_.site.soil, scanned_.terrain);
   begin_at_scan();
   if (!update.taken) return {};
-  return {cut_above(expected, before.terrain, scanned_.terrain), update.alignment};
+  return {cut_above(expected, before.terrain, scanned_.terrain), 0.0, update.alignment};
+}
+
+/// The site takes what changed little for noise, and the mean of many scans hardly follows it: what
+/// was foretold is corrected by each scan instead.
+ScanNews JobGround::take_in_noisy(const SiteEvent& event, const SiteUpdate& update) {
+  warnings_ = update.warnings;
+  scanned_.seen = seen_;
+  scanned_.deviation = sd_;
+  const Terrain before = std::exchange(scanned_.terrain, expected_);
+  ScanNews news;
+  if (update.taken) {
+    Scan scan = event.scan;
+    scan.site_from_scan = update.correction * scan.site_from_scan;
+    const ScanHeights heights = heights_of(scan, *settings_.design.sensor, expected_.bank);
+    Terrain alone = expected_;
+    alone.bank.z = heights.z - expected_.loose;
+    news = {cut_above(expected_, before, alone), event.options.change.sensor_pattern_sd,
+            update.alignment};
+    fuse(heights, scanned_.terrain, scanned_.deviation);
+    scanned_.seen = heights.z.isNaN().select(scanned_.seen, event.time).eval();
+  }
+  hold_steep(settings_.site.soil, scanned_.terrain);
+  begin_at_scan();
+  return news;
 }
 
 void JobGround::begin_at_scan() {
   expected_ = scanned_.terrain;
   seen_ = scanned_.seen;
+  sd_ = scanned_.deviation;
   unseen_.clear();
 }
 

@@ -10,6 +10,8 @@
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/site/site.hpp>
 
+#include "ground/grid_cells.hpp"
+
 /// @file
 /// The ground of a job: as a site remembers it, and what was dug since its last scan. Private to
 /// the project.
@@ -21,6 +23,7 @@ struct ScanNews {
   /// Median of how far the cuts since the last scan lie above where they were expected [m]; nothing
   /// of too few cells.
   std::optional<double> cut_off;
+  double cut_sd = 0.0;                 ///< of that, by what the scan's points share [m]
   std::optional<Alignment> alignment;  ///< SiteUpdate
 };
 
@@ -35,6 +38,10 @@ class JobGround {
   const Terrain& expected() const { return expected_; }
   /// When each cell was last seen as it is now, since 1970-01-01 UTC [s]; NaN: never, or dug since.
   const Eigen::ArrayXXd& seen() const { return seen_; }
+  /// One scan is not enough for the tolerance, as its sensor is stated to err.
+  bool is_noisy() const;
+  /// Deviation of expected(), if scans are noisy and one has told it; else 0 [m].
+  double sd_at(Cell at) const;
   /// Digs and dumps since the last scan, in their order.
   const std::vector<JobStep>& unseen() const { return unseen_; }
   /// @param kind  of these alone
@@ -56,6 +63,8 @@ class JobGround {
  private:
   void dig(const JobStep& step, double height_bias);
   void heap(const JobStep& step, double volume);
+  ScanNews take_in_noisy(const SiteEvent& event, const SiteUpdate& update);
+  void doubt_changed(const Eigen::ArrayXXd& before);
   std::string file_of(long long number) const;
   void begin_at_scan();
 
@@ -65,6 +74,7 @@ class JobGround {
   GroundState scanned_;  ///< at the last scan, on the grid of the first
   Terrain expected_;     ///< with what was dug since
   Eigen::ArrayXXd seen_;
+  Eigen::ArrayXXd sd_;  ///< of `expected_`, where scans are noisy; NaN: seen by the first alone [m]
   std::vector<JobStep> unseen_;
   std::vector<Warning> warnings_;
 };

@@ -24,6 +24,7 @@ using Eigen::Vector2d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double flattest_face = 0.15;  // of a batter; ours [rad]
 constexpr double least_faces = 0.1;     // share of the design; ours
+constexpr double around_rim = 0.1;      // of a cell, where ground is compared; ours [m]
 constexpr double least_share = 0.5;     // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
@@ -49,21 +50,39 @@ Mask counting(const HeightMap& target, double edge_margin) {
   return highest_within(left_out, margin) < 0.5;
 }
 
-/// Whether a share of the design that counts is a face that a dig does not make by itself.
-bool has_batter(const JobMap& map) {
+/// Share of what counts that is a face which a dig along the heading does not make by itself; those
+/// that rise along it count if `is_any`.
+double share_of_faces(const JobMap& map, double heading, bool is_any) {
+  const Vector2d aside(-std::sin(heading), std::cos(heading));
+  const double flattest = std::tan(flattest_face);
+  const HeightMap& target = map.target;
   int faces = 0;
   int count = 0;
-  for_each_cell(map.target.z, [&](Cell at) {
+  for_each_cell(target.z, [&](Cell at) {
     if (!map.counts(at.row, at.col)) return;
-    double rise = 0.0;
-    for_each_neighbour(map.target.z, at, [&](Cell next) {
-      rise =
-          std::max(rise, std::abs(map.target.z(at.row, at.col) - map.target.z(next.row, next.col)));
-    });
+    const auto& z = target.z;
+    const Vector2d slope = Vector2d(z(at.row, at.col + 1) - z(at.row, at.col - 1),
+                                    z(at.row + 1, at.col) - z(at.row - 1, at.col)) /
+                           (2.0 * target.cell_size);
     ++count;
-    if (rise > std::tan(flattest_face) * map.target.cell_size) ++faces;
+    if ((is_any ? slope.norm() : std::abs(slope.dot(aside))) > flattest) ++faces;
   });
-  return faces > least_faces * count;
+  return count > 0 ? static_cast<double>(faces) / count : 0.0;
+}
+
+/// Where the design does not lie below the ground, it asks for nothing; each cell by the mean
+/// around it, since a scan has noise.
+ArrayXXd below_ground(const ArrayXXd& design, const HeightMap& ground) {
+  const ArrayXXd over = ground.z - design;
+  const AreaSums sums(without_nan(over, 0.0));
+  const AreaSums known((!over.isNaN()).cast<double>());
+  const auto radius = static_cast<Eigen::Index>(std::floor(around_rim / ground.cell_size + 1e-9));
+  ArrayXXd below = design;
+  for_each_cell(design, [&](Cell at) {
+    if (known.around(at, radius) > 0.0 && !(sums.around(at, radius) > 0.0))
+      below(at.row, at.col) = std::nan("");
+  });
+  return below;
 }
 
 }  // namespace
@@ -97,7 +116,8 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   JobMap map;
   map.target = ground;
   const DesignCover cover = cover_of(settings.surface, ground);
-  map.target.z = (cover.share >= least_share).select(cover.height, std::nan("")).eval();
+  map.target.z =
+      below_ground((cover.share >= least_share).select(cover.height, std::nan("")), ground);
   map.counts = counting(map.target, design.edge_margin);
   map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
   for (const DumpArea& area : design.dump_areas) {
@@ -126,11 +146,11 @@ Vector2d JobFrame::place(double along, double beside) const {
 
 Vector2d JobFrame::of(const Vector2d& place) const { return PlanFrame(origin, heading).of(place); }
 
-JobFrame frame_of(const JobSettings& settings, const JobMap& map) {
+JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned) {
   const BasePose& start = *settings.design.start;
   JobFrame frame;
   frame.origin = {start.x, start.y};
-  frame.heading = start.heading;
+  frame.heading = wrapped(start.heading + turned);
   Eigen::AlignedBox2d box;
   for_each_cell(map.target.z, [&](Cell at) {
     if (std::isnan(map.target.z(at.row, at.col))) return;
@@ -142,7 +162,8 @@ JobFrame frame_of(const JobSettings& settings, const JobMap& map) {
   frame.far = box.max().x() + half;
   frame.right = box.min().y() - half;
   frame.left = box.max().y() + half;
-  frame.is_battered = has_batter(map);
+  frame.is_battered = share_of_faces(map, frame.heading, true) > least_faces;
+  frame.faces_across = share_of_faces(map, frame.heading, false);
   return frame;
 }
 

@@ -16,7 +16,7 @@ namespace excavplan {
 
 /// What is asked for in each cell.
 struct JobMap {
-  HeightMap target;           ///< design height; NaN outside of its footprint [m]
+  HeightMap target;           ///< design height; NaN where it does not lie below the ground [m]
   Mask counts;                ///< whether the cell counts for the deviation (CutOptions)
   Mask dump;                  ///< whether soil may be laid there
   Mask untouched;             ///< a keep-out of any depth, or an obstacle: no soil may fall there
@@ -32,19 +32,20 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground);
 /// Where the design lies along the machine's line of work.
 struct JobFrame {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of the line [m]
-  double heading = 0.0;      ///< of the line, away from where the job ends [rad]
-  double near = 0.0;         ///< of the design along the line [m]
-  double far = 0.0;          ///< likewise [m]
-  double right = 0.0;        ///< of the design beside the line, mostly below 0 [m]
-  double left = 0.0;         ///< likewise [m]
-  bool is_battered = false;  ///< some of the design is neither floor nor wall
+  double heading = 0.0;       ///< of the line, away from where the job ends [rad]
+  double near = 0.0;          ///< of the design along the line [m]
+  double far = 0.0;           ///< likewise [m]
+  double right = 0.0;         ///< of the design beside the line, mostly below 0 [m]
+  double left = 0.0;          ///< likewise [m]
+  bool is_battered = false;   ///< some of the design is neither floor nor wall
+  double faces_across = 0.0;  ///< share of what counts of the design that rises across the line
 
   Eigen::Vector2d place(double along, double beside) const;
   Eigen::Vector2d of(const Eigen::Vector2d& place) const;  ///< along and beside
 };
 
-/// Along the heading in which the machine starts: it works backwards.
-JobFrame frame_of(const JobSettings& settings, const JobMap& map);
+/// Along the heading in which the machine starts, or turned from it [rad]: it works backwards.
+JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned = 0.0);
 /// The same line from its other end.
 JobFrame reversed(const JobFrame& frame);
 

@@ -62,6 +62,11 @@ Json site_json(const JobDesign& job) {
                      {"bed_height_m", job.truck->bed_height},
                      {"target_kg", job.truck->target_mass}};
   }
+  if (job.sensor) {
+    json["sensor"] = {{"noise_sd_at_1m_m", job.sensor->own},
+                      {"pattern_sd_at_1m_m", job.sensor->shared},
+                      {"range_power", job.sensor->range_power}};
+  }
   return json;
 }
 

@@ -8,6 +8,9 @@
 
 #include <Eigen/Geometry>
 
+#include "base/angles.hpp"
+#include "job/dump_place.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -23,7 +26,10 @@ constexpr double side_margin = 0.04;    // to the sides of the design, as no mac
 constexpr double end_margin = 0.03;     // to the ends of the design, half a cell at least [m]
 constexpr double lane_overlap = 0.1;    // of two lanes [m]
 constexpr double beside_edge = 0.6;     // of tracks that stand beside the design [m]
-constexpr double batter_step = 0.3;     // of lanes that cut a face in steps [m]
+constexpr double batter_step = 0.1;     // of passes that leave a face in steps [m]
+constexpr std::size_t passes_of_lane = 3;  // that far apart are lanes for volume there
+constexpr double least_across = 0.1;       // share of the design, to cut it so
+constexpr double most_left = 0.5;          // of such faces, for another line of work
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
@@ -37,7 +43,7 @@ std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double right = frame.right + half;
   const double left = frame.left - half;
   if (left <= right) return {0.5 * (frame.left + frame.right)};
-  const double step = frame.is_battered ? batter_step : bucket_width - lane_overlap;
+  const double step = frame.faces_across > least_across ? batter_step : bucket_width - lane_overlap;
   const int more = static_cast<int>(std::ceil((left - right) / step));
   std::vector<double> lanes;
   for (int i = 0; i <= more; ++i) lanes.push_back(right + (left - right) * i / more);
@@ -52,6 +58,17 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
     groups.back().push_back(lane);
   }
   return groups;
+}
+
+/// Of a group of lanes.
+JobStation station_at(const JobFrame& frame, double along, const std::vector<double>& lanes) {
+  JobStation station = {along, 0.5 * (lanes.front() + lanes.back()), lanes};
+  if (!(frame.faces_across > least_across)) return station;
+  station.passes = lanes;
+  station.lanes.clear();
+  for (std::size_t i = 0; i < lanes.size(); i += passes_of_lane) station.lanes.push_back(lanes[i]);
+  if (station.lanes.back() != lanes.back()) station.lanes.push_back(lanes.back());
+  return station;
 }
 
 /// As few groups as are all within reach aside.
@@ -69,10 +86,17 @@ std::vector<std::vector<double>> wide_groups_of(const std::vector<double>& lanes
   }
 }
 
+/// Whether a design is dug in benches from few places: not where all lanes run along its faces.
+bool wants_benches(const JobFrame& frame, const std::vector<double>& lanes) {
+  const bool runs_on_faces = frame.is_battered && !(frame.faces_across > least_across);
+  return !runs_on_faces && wide_groups_of(lanes).size() > 1;
+}
+
 /// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
 /// the walls: one that stands too far inside would stop them.
 std::vector<double> lanes_of(const JobStation& station, bool finishing) {
   if (!finishing) return station.lanes;
+  if (!station.passes.empty()) return station.passes;
   std::vector<double> all;
   for (const double lane : station.lanes) {
     if (!all.empty()) all.push_back(0.5 * (all.back() + lane));
@@ -97,13 +121,66 @@ double side_of_soil(const JobFrame& frame, const JobDesign& design) {
   return beside.max()(0) < middle ? -1.0 : 0.0;
 }
 
+/// Before the job the tracks may reach onto the rim of a place for soil, which is filled last.
+bool can_begin(const JobFrame& frame, const JobStation& station, const Machine& machine,
+               const JobMap& map) {
+  bool free = true;
+  for_each_under({frame, station, machine}, map.target,
+                 [&](const auto& cell) { free &= cell && !map.untouched(cell->row, cell->col); });
+  const Eigen::Vector2d at = frame.place(station.along, station.beside);
+  const auto middle = cell_at(map.target, at.x(), at.y());
+  return free && middle && !map.dump(middle->row, middle->col);
+}
+
 double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
 double at_reach(const Machine& machine, double share) {
   return machine.boom_pin.x() + share * machine.full_length();
 }
 double farthest_of(const Machine& machine) { return at_reach(machine, farthest_work); }
 
+/// Along the line, from where all that is near is reached.
+double last_of(const JobFrame& frame, const Machine& machine) {
+  return std::min(frame.far - at_reach(machine, end_wall), frame.near - nearest_of(machine));
+}
+
+/// A row of places once more, between where they were, where all lanes run up or down the faces:
+/// what a bucket loses beside its lanes lies where those of two places meet.
+void add_between(const JobFrame& frame, const Machine& machine, std::vector<JobStation>& stations) {
+  std::vector<double> lanes = lanes_of(frame, machine.bucket.width_outside);
+  if (!frame.is_battered || frame.faces_across > least_across || groups_of(lanes).size() < 2)
+    return;
+  const JobStation last = stations.back();
+  lanes.erase(lanes.begin(), lanes.begin() + 1);
+  auto groups = groups_of(lanes);
+  if (last.beside > 0.5 * (frame.left + frame.right)) std::reverse(groups.begin(), groups.end());
+  for (const auto& group : groups) {
+    stations.push_back(station_at(frame, last.along, group));
+    stations.back().is_again = true;
+    stations.back().shapes_from = last.shapes_from;
+  }
+}
+
 }  // namespace
+
+JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrain& first) {
+  const JobFrame straight = frame_of(settings, map);
+  if (!(straight.faces_across > least_across)) return straight;
+  JobFrame best = straight;
+  for (const double turned : {0.5 * pi, -0.5 * pi}) {
+    const JobFrame frame = frame_of(settings, map, turned);
+    if (frame.faces_across > most_left * straight.faces_across) continue;
+    if (best.heading != straight.heading && frame.near <= best.near) continue;
+    const auto stations = stations_of(frame, settings);
+    const Machine& machine = settings.site.machine;
+    const bool can_work =
+        std::all_of(stations.begin(), stations.end(), [&](const JobStation& each) {
+          return can_begin(frame, each, machine, map) &&
+                 dump_place(settings, map, first, base_at(frame, each, first, machine));
+        });
+    if (can_work) best = frame;
+  }
+  return best;
+}
 
 WorkRange work_range(const JobFrame& frame, const Machine& machine, double along) {
   const double end = frame.far - end_margin - along;
@@ -117,9 +194,9 @@ WorkRange work_range(const JobFrame& frame, const Machine& machine, double along
 std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
   const Machine& machine = settings.site.machine;
   const auto lanes_of_all = lanes_of(frame, machine.bucket.width_outside);
-  const bool is_wide = groups_of(lanes_of_all).size() > 1;
+  const bool is_wide = wants_benches(frame, lanes_of_all);
   const double first = frame.far - at_reach(machine, is_wide ? end_of_wide : end_wall);
-  const double last = std::min(first, frame.near - nearest_of(machine));
+  const double last = last_of(frame, machine);
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
   const auto groups = is_wide ? wide_groups_of(lanes_of_all) : groups_of(lanes_of_all);
@@ -128,12 +205,16 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   const auto starts_left = [&](int row) { return soil == 0.0 ? row % 2 == 1 : soil < 0.0; };
   std::vector<JobStation> stations;
   for (int i = 0; i <= more; ++i) {
-    const double along = more == 0 ? first : first + (last - first) * i / more;
+    const double step = more == 0 ? 0.0 : (last - first) / more;
+    const double along = first + step * i;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
-      stations.push_back({along, 0.5 * (lanes.front() + lanes.back()), lanes});
+      stations.push_back(station_at(frame, along, lanes));
       stations.back().is_wide = is_wide;
+      if (!is_wide && groups.size() > 1 && i < more)
+        stations.back().shapes_from = along + step + farthest_of(machine) - overlap;
     }
+    add_between(frame, machine, stations);
   }
   return stations;
 }
@@ -143,8 +224,7 @@ std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings
   const Machine& machine = settings.site.machine;
   std::vector<JobStation> stations;
   for (const auto& lanes : groups_of(lanes_of(back, machine.bucket.width_outside))) {
-    stations.push_back(
-        {back.near - nearest_of(machine), 0.5 * (lanes.front() + lanes.back()), lanes});
+    stations.push_back(station_at(back, back.near - nearest_of(machine), lanes));
     stations.back().is_beyond = true;
   }
   return stations;

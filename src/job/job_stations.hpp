@@ -20,15 +20,23 @@ namespace excavplan {
 
 /// A place of the machine: along its line of work, and beside it.
 struct JobStation {
-  double along = 0.0;              ///< [m]
-  double beside = 0.0;             ///< [m]
-  std::vector<double> lanes = {};  ///< that it digs from there, beside the line of work [m]
-  double turned = 0.0;             ///< from the line of work [rad]
-  bool is_beyond = false;          ///< the far end: all of it is along the reversed() line
-  bool is_wide = false;            ///< of a design that is wider than one place's lanes
+  double along = 0.0;               ///< [m]
+  double beside = 0.0;              ///< [m]
+  std::vector<double> lanes = {};   ///< that it digs from there, beside the line of work [m]
+  double turned = 0.0;              ///< from the line of work [rad]
+  std::vector<double> passes = {};  ///< lanes of its finishing passes; empty: as `lanes` [m]
+  bool is_wide = false;             ///< of a design that is wider than one place's lanes
+  bool is_beyond = false;           ///< the far end: all of it is along the reversed() line
+  bool is_again = false;            ///< only if the shape of what it reaches is not right
+  double shapes_from = -1e9;        ///< along the line; what is nearer, later places shape [m]
 
   bool is_lookout() const { return lanes.empty(); }  ///< it only scans from there
 };
+
+/// The line of work that the faces of a design ask for: a bucket's edge is level across, so that a
+/// drag along a face leaves steps. Along the heading of the start, or at right angles to it if that
+/// makes most of the faces and the machine can stand and dump everywhere.
+JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrain& first);
 
 /// The places of a job in their order, from the far end of the design to beyond its near end. From
 /// each one all that is within reach ahead is dug; where the design is wider than the lanes of one

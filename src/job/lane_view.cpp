@@ -21,7 +21,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Index top_part = 4;  // the highest quarter of the soil under the bucket meets it; ours
 constexpr double edge_slack =
-    0.04;  // by which the bucket's edge may be beside the design; ours [m]
+    0.04;  // by which the bucket's edge may be beside the design or within a face; ours [m]
+constexpr double face_rise = 0.01;  // of the design at that edge, if it is a face; ours [m]
 
 double mean_of(const std::vector<double>& values, Index first) {
   return std::accumulate(values.begin(), values.begin() + first, 0.0) / static_cast<double>(first);
@@ -77,18 +78,19 @@ void LaneView::look_under_bucket(double bucket_width) {
   floor_ = ground_at_ = top_ = ArrayXd::Zero(columns());
   std::vector<double> heights;
   for (Index col = 0; col < columns(); ++col) {
-    double floor = -infinity;
+    double floor = -infinity, edge = -infinity;
     heights.clear();
     for (Index row = first_row_; row < end_row_; ++row) {
       const double z = surface_.z(row, col);
       const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
       const double target = target_(row, col);
-      if (!(is_edge && std::isnan(target)))
-        floor = std::max(floor, std::isnan(target) ? z : target);
+      if (!is_edge) floor = std::max(floor, std::isnan(target) ? z : target);
+      if (is_edge && !std::isnan(target)) edge = std::max(edge, target);
       if (forbidden_(row, col) > floor)
         floor = std::isinf(forbidden_(row, col)) ? nan : forbidden_(row, col);
       if (!is_edge && !std::isnan(z)) heights.push_back(z);
     }
+    if (edge < floor + face_rise) floor = std::max(floor, edge);
     std::sort(heights.begin(), heights.end(), std::greater<>());
     const auto known = static_cast<Index>(heights.size());
     const bool is_known = 2 * known > end_row_ - first_row_ - 2 * inner;

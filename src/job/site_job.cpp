@@ -138,7 +138,7 @@ struct SiteJob::State {
   void look_at_design() {
     map = map_of(settings, first.bank);
     design = map.target.z;
-    frame = frame_of(settings, map);
+    frame = work_frame(settings, map, first);
     stations = stations_of(frame, settings);
     if (is_one_group(stations))
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
@@ -254,6 +254,7 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   task.may_risk = record.progress.stalls == 0;
   task.finishing = finishing;
   task.is_wide = stations[record.station].is_wide;
+  task.has_faces = frame.is_battered;
   task.keeps_load = finishing && may_keep(0.0);
   task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
@@ -411,6 +412,7 @@ void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const 
     if (!map.counts(cell.row, cell.col)) return;
     const Eigen::Vector2d place = line.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
     if (place.x() < range.near || place.x() > range.far) return;
+    if (place.x() + at.x() < station.shapes_from) return;
     if (place.y() < station.lanes.front() - at.y() - half) return;
     if (place.y() <= station.lanes.back() - at.y() + half) visit(cell);
   });
@@ -427,9 +429,10 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
     const auto around = above_design_around(map, ground.expected(), cell);
     const double above =
         std::accumulate(around.begin(), around.end(), 0.0) / static_cast<double>(around.size());
+    const double sure = above - ground.sd_at(cell);
     ++count;
-    if (above > high_share * tolerance) ++high;
-    if (above > heap_share * tolerance) ++heaps;
+    if (sure > high_share * tolerance) ++high;
+    if (sure > heap_share * tolerance) ++heaps;
   });
   return high > most_high * count || heaps > most_heaps * count;
 }
@@ -494,14 +497,15 @@ JobStep SiteJob::State::decide() {
 /// Where the present station is; nothing if there is nothing to do.
 std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) const {
   const JobStation& station = stations[record.station];
-  if (station.is_beyond && has_shape(now)) return std::nullopt;
+  if ((station.is_beyond || station.is_again) && has_shape(now)) return std::nullopt;
   if (station.is_lookout()) {
     if (now.seen >= well_seen) return std::nullopt;
     return best_lookout({frame, settings, map, ground.expected(), ground.seen(),
                          record.looks.empty() ? usual_looks() : record.looks, record.base});
   }
   const bool is_again = record.station > 0 && stations[record.station - 1].is_lookout();
-  if ((is_again || station.is_beyond) && !wants_passes(base_of(station))) return std::nullopt;
+  if ((is_again || station.is_again || station.is_beyond) && !wants_passes(base_of(station)))
+    return std::nullopt;
   if (!station.is_wide) return station;
   return nearest_place({settings, map, first, ground.expected()}, frame_at(station), station);
 }
@@ -557,7 +561,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
   constexpr double reading_sd = 0.012;
   if (news.cut_off) {
     LearntNumber& bias = record.learning.height_bias;
-    bias.learn(bias.mean + *news.cut_off, reading_sd * reading_sd);
+    bias.learn(bias.mean + *news.cut_off, reading_sd * reading_sd + news.cut_sd * news.cut_sd);
   }
   if (news.alignment) {
     record.learning.datum.learn(*news.alignment);

@@ -35,6 +35,7 @@ constexpr double level_from = 0.2;  // before the start of a dig, the ground who
 constexpr double level_to = 1.2;    // likewise [m]
 const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
                                           0.22, 0.32, 0.45};  // of the layer of a drag [m]
+constexpr double lowest = -100.0;                             // of a drag along the floor [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
@@ -80,6 +81,10 @@ constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do bett
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
 constexpr Attitude steep_attitude = {1.1, false};              // along the walls of a pit
 const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
+constexpr double steepest_drag = 1.0;                          // down a face [rad]
+constexpr double steepest_floor = 0.15;                        // else it is a face [rad]
+constexpr double on_face = 0.2;                                // where its slope is told [m]
+const std::array<double, 2> steeper = {0.1, 0.3};              // of a dig than its face [rad]
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
 
@@ -272,10 +277,10 @@ class StepSearch {
     if (task_.finishing) return lay_out_passes(lane);
     const WorkLine& line = lanes_[lane].line;
     for (double start = line.far; start > line.near + start_step; start -= start_step) {
-      if (is_worth_a_dig(lanes_[lane], start))
-        lay_out_layers(lane, start, attitudes, rules_in(lane));
-      if (task_.is_wide && is_worth_a_dig(lanes_[lane], start))
-        lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
+      if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      lay_out_layers(lane, start, attitudes, rules_in(lane));
+      if (task_.is_wide) lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
+      lay_out_face(lane, start);
     }
   }
 
@@ -312,6 +317,7 @@ class StepSearch {
     const double last = line.near + least_pass * (line.far - line.near);
     for (double start = line.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      lay_out_face(lane, start);
       if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
@@ -327,7 +333,8 @@ class StepSearch {
     }
   }
 
-  /// Where the ground before a start comes into shape for a while: to cut on would only roughen it.
+  /// Where the ground before a start comes into shape for a while: to cut on would only roughen
+  /// it.
   double in_shape_before(const Lane& lane, double start) const {
     for (double x = start - shortest_pass; x > lane.line.near; x -= lane.view.surface().cell_size) {
       const double left =
@@ -335,6 +342,33 @@ class StepSearch {
       if (left < task_.slack) return x;
     }
     return lane.line.near;
+  }
+
+  /// Down a face that falls towards the machine, and on along what lies before it.
+  void lay_out_face(std::size_t lane, double start) {
+    if (!task_.has_faces) return;
+    DigPathOptions rules = rules_in(lane);
+    rules.drag_keeps_angle = true;
+    const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
+    if (!(face > steepest_floor)) return;
+    const double down = std::max(0.0, lanes_[lane].ground(start) - rules.floor(start));
+    for (const double more : steeper) {
+      const double angle = face + more;
+      rules.drag_grade = face + 0.5 * more;
+      if (rules.drag_grade > steepest_drag) break;
+      const double from = start - down / std::tan(angle);
+      const double longest = from - nearest(lanes_[lane].line, angle);
+      double last = 0.0;
+      for (const double fill : fills) {
+        const double drag =
+            task_.finishing
+                ? longest
+                : std::min(drag_that_fills(lanes_[lane], {from, lowest}, fill), longest);
+        if (drag == last || !(drag > shortest_drag)) break;
+        add(lane, {angle, 1.0, drag}, start, rules);
+        last = drag;
+      }
+    }
   }
 
   /// Layers of all depths from there.
@@ -362,8 +396,8 @@ class StepSearch {
                           [&](Index col) { return lane.excess(col); }) > high_wall;
   }
 
-  /// Steep layers from the end of the work: a flat cut would leave a ramp there, which is costly to
-  /// take off by itself.
+  /// Steep layers from the end of the work: a flat cut would leave a ramp there, which is
+  /// costly to take off by itself.
   void cut_end_wall(std::size_t lane, const Attitude& attitude) {
     DigPathOptions rules = rules_in(lane);
     const double far = lanes_[lane].line.far;
@@ -398,8 +432,8 @@ class StepSearch {
     }
   }
 
-  /// Where a drag with this floor angle may end: as the bucket curls, its tip comes nearer to the
-  /// tracks.
+  /// Where a drag with this floor angle may end: as the bucket curls, its tip comes nearer to
+  /// the tracks.
   double nearest(const WorkLine& line, double angle) const {
     const double attitude = angle + heel_clearance + machine_.beta();
     const double curls = machine_.bucket_length * (1.0 - std::cos(attitude));
@@ -507,7 +541,8 @@ class StepSearch {
     return step;
   }
 
-  /// In a wide design of what the bucket lifts: what it pushes aside is lifted from another lane.
+  /// In a wide design of what the bucket lifts: what it pushes aside is lifted from another
+  /// lane.
   double gained_by(const StepDig& step) const {
     return task_.is_wide ? step.dig.payload_volume / bulking() : step.change.gained;
   }

@@ -33,6 +33,7 @@ struct StepTask {
   std::optional<double> bench = {};
   bool is_wide = false;           ///< soil that leaves its lane for another one is no loss
   bool finishing = false;         ///< along the floor, for its shape
+  bool has_faces = false;         ///< some of the design is neither floor nor wall
   bool keeps_load = false;        ///< a load that the bucket can keep is not dumped
   double carried = 0.0;           ///< loose, in the bucket [m^3]
   double allowance = 0.0;         ///< over the design, below which nothing is cut [m]

@@ -173,6 +173,7 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
     update.estimate = std::move(seen.estimate);
     update.warnings = std::move(seen.warnings);
     update.alignment = seen.alignment;
+    update.correction = seen.correction;
     update.taken = seen.fits;
     next.ground = std::move(seen.ground);
     add_first_heights(next.ground, settings, next.first);

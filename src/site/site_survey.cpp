@@ -75,11 +75,11 @@ void hold_void_ratios(const SoilKind& soil, Eigen::ArrayXXd& ratios) {
 }
 
 /// False of a scan of another place, or in another frame.
-bool fits_ground(const DensityEstimate& estimate) {
-  return std::none_of(estimate.warnings.begin(), estimate.warnings.end(), [](const Warning& each) {
+bool fits_ground(const DensityEstimate& estimate, bool dug) {
+  return std::none_of(estimate.warnings.begin(), estimate.warnings.end(), [&](const Warning& each) {
     const bool is_of_place = each.code == WarningCode::scans_do_not_fit ||
                              each.code == WarningCode::registration_beyond_prior ||
-                             each.code == WarningCode::looks_swapped;
+                             (dug && each.code == WarningCode::looks_swapped);
     return is_of_place && each.ends_trust;
   });
 }
@@ -173,8 +173,11 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
   if (is_apart) in_site.options.dug_path = std::nullopt;
   if (is_apart) in_site.options.joint_work = std::nullopt;
   DensityEstimate estimate = estimate_in(in_site, settings, ground);
-  result.fits = fits_ground(estimate);
-  if (estimate.registration) result.alignment = estimate.registration->found;
+  result.fits = fits_ground(estimate, event.dug);
+  if (estimate.registration) {
+    result.alignment = estimate.registration->found;
+    result.correction = estimate.registration->correction;
+  }
   if (result.fits) {
     result.ground = std::move(*estimate.ground_after);
     const auto& moved_by = estimate.registration;

@@ -27,8 +27,9 @@ struct SurveyedEvent {
   std::optional<DensityEstimate> estimate;
   GroundState ground;                  ///< after, on a grid that covers the one before
   std::optional<Alignment> alignment;  ///< of the scan to the ground before
-  std::vector<Warning> warnings;       ///< of the estimate or of the scan's ground
-  bool fits = true;  ///< the scan is of this ground, and not of another place or frame
+  Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();  ///< likewise, of its points
+  std::vector<Warning> warnings;  ///< of the estimate or of the scan's ground
+  bool fits = true;               ///< the scan is of this ground, and not of another place or frame
 };
 
 /// @param before  ground of the site

@@ -34,7 +34,8 @@ TEST(PlainSite, AllThatAJobSaysIsRead) {
            R"(}],"obstacles":[{"kind":"pole","polygon":)" + square +
            R"(,"height_m":6}],"dump_areas":[{"kind":"heap","polygon":)" + square +
            R"(}],"truck":{"bed_polygon":)" + square +
-           R"(,"bed_height_m":2.4,"target_kg":4000},"start_pose":{"x":1,"y":2,"heading_rad":3})"));
+           R"(,"bed_height_m":2.4,"target_kg":4000},"start_pose":{"x":1,"y":2,"heading_rad":3})" +
+           R"(,"sensor":{"noise_sd_at_1m_m":0.001,"pattern_sd_at_1m_m":0.002,"range_power":2})"));
   const JobDesign job = read_plain_site(file.path());
   require_job(job);
   EXPECT_EQ(job.tolerance, 0.05);
@@ -45,6 +46,10 @@ TEST(PlainSite, AllThatAJobSaysIsRead) {
   EXPECT_EQ(job.dump_areas.at(0).kind, DumpArea::Kind::heap);
   EXPECT_EQ(job.truck->target_mass, 4000.0);
   EXPECT_EQ(job.start->heading, 3.0);
+  ASSERT_TRUE(job.sensor.has_value());
+  EXPECT_EQ(job.sensor->own, 0.001);
+  EXPECT_EQ(job.sensor->shared, 0.002);
+  EXPECT_EQ(job.sensor->range_power, 2.0);
   EXPECT_EQ(job.words->depth, 0.5);
 }
 

@@ -735,6 +735,9 @@ TEST(VolumeChange, ErrorsThatNeighboursShareEndTrust) {
     after.z += smooth_noise(after, sd, 0.4, 3, 3);
     const VolumeChange change = measure_change(before, after);
     EXPECT_EQ(count_of(change, "scans_do_not_fit"), sd > 0.01 ? 1 : 0) << sd;
+    ChangeOptions stated;
+    stated.sensor_pattern_sd = 0.012;
+    EXPECT_EQ(count_of(measure_change(before, after, stated), "scans_do_not_fit"), 0) << sd;
   }
 }
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <memory>
 
 #include <excavplan/job/job_motion.hpp>
 #include <excavplan/trial/job_score.hpp>
@@ -17,6 +19,7 @@
 #include "job/job_stations.hpp"
 #include "job/lane_view.hpp"
 #include "job/lookout.hpp"
+#include "job/noisy_scan.hpp"
 #include "job/station_place.hpp"
 #include "job/step_search.hpp"
 #include "job/trench_job.hpp"
@@ -51,6 +54,19 @@ struct HandMadeJob {
   Terrain ground = undisturbed(flat_ground({-12.0, -8.0, 18.0, 8.0}, 0.05));
   JobSettings settings;
 };
+
+/// The widest gap beside the lanes of all stations but the last row's, or with those between.
+double farthest_between(const std::vector<JobStation>& stations, bool with_between) {
+  std::vector<double> ends;
+  for (const JobStation& each : stations) {
+    if (each.is_again && !with_between) continue;
+    ends.push_back(each.beside);
+  }
+  std::sort(ends.begin(), ends.end());
+  double widest = 0.0;
+  for (std::size_t i = 1; i < ends.size(); ++i) widest = std::max(widest, ends[i] - ends[i - 1]);
+  return widest;
+}
 
 TEST(JobMap, HoldsTheDesignWhereItIs) {
   const HandMadeJob job;
@@ -211,6 +227,111 @@ TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
     const WorkRange range = work_range(job.frame(), machine, stations[i].along);
     EXPECT_EQ(range.ends_at_wall, i == 0) << i;
   }
+}
+
+/// A cut along x with a face to its left, between two places for soil, and the machine at its foot.
+struct SlopeJob : HandMadeJob {
+  SlopeJob() {
+    ground = undisturbed(flat_ground({-12.0, -12.0, 18.0, 8.0}, 0.05));
+    settings.design.start = BasePose{4.5, -6.0, 0.0, 0.0};
+    settings.design.dump_areas = {{DumpArea::Kind::windrow, box(-4.5, -8.0, -0.8, 0.0)},
+                                  {DumpArea::Kind::windrow, box(9.6, -8.0, 13.5, 0.0)}};
+    DesignWords words;
+    words.kind = DesignKind::slope;
+    words.length = 9.0;
+    words.floor_width = 3.5;
+    words.batter = 1.5;
+    words.floor_z = -0.4;
+    settings.surface = design_of_words(words, ground.bank);
+  }
+};
+
+TEST(JobMap, AsksForNothingWhereTheDesignIsAboveTheGround) {
+  const SlopeJob job;
+  const JobMap map = job.map();
+  double highest = -10.0;
+  for (const double z : map.target.z.reshaped()) highest = std::fmax(highest, z);
+  constexpr double of_cell = 0.05 / 1.5;
+  EXPECT_NEAR(highest, 0.0, of_cell);
+}
+
+TEST(JobFrame, IsTurnedAcrossTheCutForAFaceAlongIt) {
+  const SlopeJob job;
+  const JobMap map = job.map();
+  EXPECT_GT(frame_of(job.settings, map).faces_across, 0.1);
+  const JobFrame frame = work_frame(job.settings, map, job.ground);
+  EXPECT_NEAR(frame.heading, 0.5 * pi, 1e-9);
+  EXPECT_EQ(frame.faces_across, 0.0);
+  EXPECT_GT(frame.near, 0.0);
+}
+
+TEST(JobFrame, IsNotTurnedIfSoilThenHasNoPlace) {
+  SlopeJob job;
+  job.settings.design.dump_areas.pop_back();
+  EXPECT_EQ(work_frame(job.settings, job.map(), job.ground).heading, 0.0);
+}
+
+TEST(JobFrame, OfUprightWallsIsNotTurned) {
+  const HandMadeJob job;
+  EXPECT_EQ(work_frame(job.settings, job.map(), job.ground).heading, 0.0);
+}
+
+TEST(JobStations, OfAFaceAheadAreMetBetweenAgain) {
+  const SlopeJob job;
+  const JobMap map = job.map();
+  const JobFrame frame = work_frame(job.settings, map, job.ground);
+  const auto stations = stations_of(frame, job.settings);
+  const double far = farthest_between(stations, false), between = farthest_between(stations, true);
+  EXPECT_GT(far, 1.0);
+  EXPECT_LT(between, 0.7 * far) << "ridges between two places lie in no lane";
+  EXPECT_GT(stations.front().shapes_from, frame.near);
+  EXPECT_LT(stations.back().shapes_from, frame.near);
+}
+
+TEST(JobStations, PassesAlongAFaceLieCloserThanLanesForVolume) {
+  SlopeJob job;
+  const auto stations = stations_of(job.frame(), job.settings);
+  for (const JobStation& each : stations) {
+    ASSERT_FALSE(each.passes.empty());
+    for (std::size_t i = 1; i < each.passes.size(); ++i)
+      EXPECT_LE(each.passes[i] - each.passes[i - 1], 0.1 + 1e-9);
+    EXPECT_EQ(each.passes.front(), each.lanes.front());
+    EXPECT_EQ(each.passes.back(), each.lanes.back());
+    EXPECT_LE(each.lanes.size(), each.passes.size() / 3 + 2);
+  }
+}
+
+TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
+  SlopeJob job;
+  JobMap map = job.map();
+  const JobFrame frame = work_frame(job.settings, map, job.ground);
+  const JobStation station = stations_of(frame, job.settings)[2];
+  constexpr double left = 0.06;  // on face and floor [m]
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    double& bank = job.ground.bank.z(at.row, at.col);
+    if (!std::isnan(target)) bank = std::min(bank, target + left);
+  });
+  const BasePose base = base_at(frame, station, job.ground, job.settings.site.machine);
+  const WorkRange range = work_range(frame, job.settings.site.machine, station.along);
+  StepTask task{job.settings, map, job.ground, base, {{-2.0, -1.5, 2.4}, 1.0, 2.4, false}, {}};
+  task.lines = {{0.0, 0.0, range.far - 1.5, range.far}};  // the face and its foot
+  task.finishing = true;
+  task.has_faces = true;
+  const auto dig = best_dig(task);
+  ASSERT_TRUE(dig.has_value());
+  EXPECT_GT(dig->change.cleared, 0.6 * left * 0.7 * 0.6);
+  EXPECT_LT(dig->change.too_deep, 0.005);
+}
+
+TEST(StepSearch, NoDragGoesDownAWall) {
+  const HandMadeJob job;
+  const JobMap map = job.map();
+  StepTask task{
+      job.settings, map, job.ground, {4.3, 0.0, 0.0, 0.0}, {{5.0, 3.0, 2.4}, 0.6, 2.4, false}, {}};
+  task.lines = {{0.0, 0.1, 2.95, 5.75}};  // to just beyond the end
+  task.has_faces = true;
+  EXPECT_TRUE(best_dig(task).has_value());
 }
 
 TEST(JobFrame, ReversedIsTheSameDesignFromItsOtherEnd) {
@@ -667,6 +788,51 @@ TEST(JobGround, WhatADigChangedIsNotSeenUntilAScanSeesIt) {
   job.look(of.truth.scan(), of.truth.time() + 1.0);
   EXPECT_GT(job.progress().seen, dug);
   EXPECT_LE(job.progress().seen, of.truth.seen_share(footprint_of(of.hidden)) + 0.03);
+}
+
+/// Of level ground, seen from 3 m above the origin.
+Scan level_scan(double z, double reach) {
+  auto cloud = std::make_shared<Cloud>();
+  cloud->sensor_origin = Eigen::Vector3d(0.0, 0.0, 3.0);
+  for (double x = 0.5; x < reach; x += 0.02) {
+    for (double y = -1.0; y < 1.0; y += 0.02) cloud->points.emplace_back(x, y, z);
+  }
+  cloud->width = cloud->points.size();
+  Scan scan;
+  scan.clouds = {cloud};
+  scan.z_is_up = true;
+  return scan;
+}
+
+TEST(NoisyScan, ItsHeightsErrAsStatedForTheirRange) {
+  const SensorErrors stereo = {0.001, 0.0012, 2.0};
+  const ScanHeights heights =
+      heights_of(level_scan(0.0, 6.0), stereo, flat_ground({0.0, -1.0, 8.0, 1.0}, 0.05));
+  const auto sd_at = [&](double x) {
+    const auto at = *cell_at(flat_ground({0.0, -1.0, 8.0, 1.0}, 0.05), x, 0.0);
+    return heights.sd(at.row, at.col);
+  };
+  // The range of 4 m has a height error of 3 / 4 of that along it.
+  const double shared = 0.0012 * 16.0 * 0.75;
+  EXPECT_GT(sd_at(std::sqrt(7.0)), shared);
+  EXPECT_LT(sd_at(std::sqrt(7.0)), 1.15 * shared);
+  EXPECT_GT(sd_at(5.0), 1.5 * sd_at(2.0));
+  EXPECT_TRUE(heights.z(5, 150) != heights.z(5, 150)) << "nobody saw what is 7.5 m away";
+}
+
+TEST(NoisyScan, ManyTellMoreThanOneAndAChangeBeginsAnew) {
+  Terrain ground = undisturbed(flat_ground({0.0, 0.0, 0.1, 0.05}, 0.05));
+  Eigen::ArrayXXd sd = Eigen::ArrayXXd::Constant(1, 2, std::nan(""));
+  ScanHeights scan = {ground.bank.z, Eigen::ArrayXXd::Constant(1, 2, 0.02)};
+  scan.z << 0.02, 0.3;
+  fuse(scan, ground, sd);
+  EXPECT_NEAR(ground.bank.z(0, 0), 0.01, 1e-12) << "the first scan of a place counts alike";
+  EXPECT_NEAR(sd(0, 0), 0.02 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(ground.bank.z(0, 1), 0.3, 1e-12);
+  EXPECT_NEAR(sd(0, 1), 0.02, 1e-12);
+  scan.z << 0.04, 0.3;
+  fuse(scan, ground, sd);
+  EXPECT_NEAR(ground.bank.z(0, 0), 0.02, 1e-12);
 }
 
 TEST(JobMotion, TheToothStaysOnItsLane) {

@@ -19,7 +19,10 @@ struct ChangeOptions {
   /// Zones and objects are widened by this or a cell at least, and more where noise hides their
   /// thin edge [m], >= 0.
   double margin = 0.05;
-  double spill_distance = 0.6;     ///< rising ground this near to the hole is spill [m], >= 0
+  double spill_distance = 0.6;  ///< rising ground this near to the hole is spill [m], >= 0
+  /// What neighbouring points of one scan have in common, as its sensor is stated to err [m], >= 0:
+  /// stable ground that differs by no more than that explains does not speak against the scans.
+  double sensor_pattern_sd = 0.0;
   double max_unknown_share = 0.2;  ///< more unknown cells in a zone give a warning [-]
   /// With more unknown cells in a hole, spill or heap, unless it is a small part of its kind,
   /// bulking_factor() refuses the volumes [-]; not below max_unknown_share

@@ -48,6 +48,13 @@ struct JobTruck {
   double target_mass = 0.0;  ///< of a load [kg], > 0
 };
 
+/// What is stated of the errors of a sensor's ranges.
+struct SensorErrors {
+  double own = 0.0;          ///< sd at 1 m, of each return by itself [m], >= 0
+  double shared = 0.0;       ///< sd at 1 m of what neighbouring returns share [m], >= 0
+  double range_power = 0.0;  ///< both grow with the range to this power, in 0 .. 4
+};
+
 /// A job as its description says it.
 struct JobDesign {
   std::string name;
@@ -61,6 +68,7 @@ struct JobDesign {
   std::vector<JobObstacle> obstacles = {};
   std::vector<DumpArea> dump_areas = {};
   std::optional<JobTruck> truck = {};
+  std::optional<SensorErrors> sensor = {};  ///< of the scans during the job
 };
 
 /// Reads the description of a plain site (docs/formats.md#plain-sites). Its files are found beside

@@ -42,7 +42,9 @@ struct SiteUpdate {
   /// Of the estimate, and scan_not_taken (ends trust), undug_change.
   std::vector<Warning> warnings;
   std::optional<Alignment> alignment;  ///< of the scan to the ground; none of the first
-  bool trustworthy = true;             ///< false after a warning that ends trust
+  /// Takes its points onto the ground; identity of the first [m].
+  Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();
+  bool trustworthy = true;  ///< false after a warning that ends trust
 };
 
 }  // namespace excavplan
