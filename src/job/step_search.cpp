@@ -46,18 +46,19 @@ constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
 constexpr double same_turn = 0.03;     // likewise [rad]
 constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
-constexpr double least_in_hard = 0.07;  // likewise in soil that lets no bucket fill
-constexpr double least_on_bench = 0.3;  // likewise where more is below that can come with it
-constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
-constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
-constexpr double standing = 0.05;       // of a bank in a lane over the mean ground of the lane [m]
-constexpr double least_finished = 0.035;  // that a pass brings within the tolerance [m^2]
-constexpr double least_cleared = 0.02;    // or clears, for later ones [m^3]
-constexpr double wall_from = 0.5;         // before the end, soil that later digs would leave [m]
-constexpr double wall_to = 0.12;          // likewise [m]
-constexpr double high_wall = 0.03;        // of that soil, to be cut before all else [m]
-constexpr double wall_worth = 1.0;        // of that soil, beyond that of other soil
-constexpr double shortest_drag = 0.2;     // [m]
+constexpr double least_in_hard = 0.07;   // likewise in soil that lets no bucket fill
+constexpr double least_on_bench = 0.3;   // likewise where more is below that can come with it
+constexpr double least_at_wall = 0.06;   // likewise, counting what lies there twice
+constexpr double least_lifted = 0.012;   // by a finishing pass [m^3]
+constexpr double standing = 0.05;        // of a bank in a lane over the mean ground of the lane [m]
+constexpr double least_finished = 0.02;  // that a pass brings within the tolerance [m^2]
+constexpr double least_cleared = 0.01;   // or clears, for later ones [m^3]
+constexpr double wall_from = 0.5;        // before the end, soil that later digs would leave [m]
+constexpr double wall_to = 0.12;         // likewise [m]
+constexpr double high_wall = 0.03;       // of that soil, to be cut before all else [m]
+constexpr double most_doubt_at_wall = 1.42;  // of the soil's strength
+constexpr double wall_worth = 1.0;           // of that soil, beyond that of other soil
+constexpr double shortest_drag = 0.2;        // [m]
 constexpr double holding = 0.9;  // of the angle of repose: a bucket's floor on which soil stays
 /// Of the bucket's floor in the penetration [rad], and whether it stays so in the drag or turns
 /// with the arm.
@@ -136,6 +137,8 @@ class StepSearch {
         simulator_(machine_, with_strength(task.settings.site.soil, task.strength_factor),
                    task.density_percent),
         hard_(machine_, with_strength(task.settings.site.soil, task.hard_factor),
+              task.density_percent),
+        firm_(machine_, with_strength(task.settings.site.soil, wall_factor()),
               task.density_percent),
         capacity_(heaped_capacity(machine_) - task.carried) {
     for (const WorkLine& line : task.lines) {
@@ -530,15 +533,23 @@ class StepSearch {
     const double gain = gain_of(step, aim);
     if (step.change.touched > most_touched) return std::nullopt;
     if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;
-    const auto in_hard = dig_of_path(machine_, hard_, ground, candidate.path, cycle_of(candidate));
+    const auto in_hard = dig_of_path(machine_, aim == Aim::wall ? firm_ : hard_, ground,
+                                     candidate.path, cycle_of(candidate));
     const auto* hard = std::get_if<PlannedDig>(&in_hard);
     step.may_stall = hard == nullptr;
     step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
     if (hard != nullptr) {
-      step.signs.energy_share = std::log(hard->energy / step.dig.energy) /
-                                std::log(task_.hard_factor / task_.strength_factor);
+      step.signs.energy_share =
+          std::log(hard->energy / step.dig.energy) /
+          std::log((aim == Aim::wall ? wall_factor() : task_.hard_factor) / task_.strength_factor);
     }
     return step;
+  }
+
+  /// On the strength, at which no dig at a wall may stall: a flat one would leave a ramp, and a
+  /// stall costs less.
+  double wall_factor() const {
+    return std::min(task_.hard_factor, most_doubt_at_wall * task_.strength_factor);
   }
 
   /// In a wide design of what the bucket lifts: what it pushes aside is lifted from another
@@ -578,6 +589,7 @@ class StepSearch {
   const Machine& machine_;
   HeightMapSimulator simulator_;
   HeightMapSimulator hard_;
+  HeightMapSimulator firm_;
   double capacity_;
   std::vector<Lane> lanes_;
   std::vector<Candidate> candidates_;

@@ -165,11 +165,12 @@ struct StandingJob : HandMadeJob {
     station = stations_of(frame(), settings).back();
   }
   std::optional<JobStation> nearest() const {
-    const JobMap of_design = map();
-    return nearest_place({settings, of_design, first, ground}, frame(), station);
+    const JobMap of_design = map_of(settings, first.bank);
+    const JobFrame line = frame_of(settings, of_design);
+    return nearest_place({settings, of_design, first, ground}, line, station);
   }
   Eigen::Vector2d at(const JobStation& there) const {
-    return frame().place(there.along, there.beside);
+    return frame_of(settings, map_of(settings, first.bank)).place(there.along, there.beside);
   }
   Terrain first;
   JobStation station;
