@@ -50,7 +50,7 @@ class JobGround {
   /// What the simulator foretells of a step, with the edge so far above the path [m].
   void expect(const JobStep& step, double height_bias);
   /// Takes in a scan of the ground.
-  ScanNews take_in(const SiteEvent& event);
+  ScanNews take_in(const SiteEvent& scanned);
 
   /// Writes the ground at the last scan. @param number  of the site's updates
   void save(long long number) const;

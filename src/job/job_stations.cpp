@@ -163,7 +163,7 @@ void add_between(const JobFrame& frame, const Machine& machine, std::vector<JobS
 }  // namespace
 
 JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrain& first) {
-  const JobFrame straight = frame_of(settings, map);
+  JobFrame straight = frame_of(settings, map);
   if (!(straight.faces_across > least_across)) return straight;
   JobFrame best = straight;
   for (const double turned : {0.5 * pi, -0.5 * pi}) {

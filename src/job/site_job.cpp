@@ -15,7 +15,6 @@
 #include "base/check.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
-#include "job/clear_stations.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_ground.hpp"
 #include "job/job_log.hpp"
@@ -516,7 +515,7 @@ std::optional<JobStation> SiteJob::State::place_to_dump_from() const {
   if (!record.has_arrived || !station.is_wide) return std::nullopt;
   if (dump_place(settings, map, ground.expected(), record.base)) return std::nullopt;
   const JobFrame line = frame_at(station);
-  const auto place = nearest_place({settings, map, first, ground.expected()}, line, station);
+  auto place = nearest_place({settings, map, first, ground.expected()}, line, station);
   if (!place) return place;
   const Eigen::Vector2d off =
       line.of({record.base.x, record.base.y}) - Eigen::Vector2d(place->along, place->beside);

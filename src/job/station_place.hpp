@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/job/job_settings.hpp>
@@ -11,7 +12,8 @@
 #include "job/job_stations.hpp"
 
 /// @file
-/// Where the machine can stand as the ground is now. Private to the project.
+/// Where the machine can stand and turn, before the job and as the ground is now. Private to the
+/// project.
 
 namespace excavplan {
 
@@ -30,5 +32,16 @@ bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& 
 /// The place nearest to that of a station where the machine can stand and its soil has a place.
 std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& frame,
                                         const JobStation& station);
+
+/// Whether the upper structure turns from looking ahead to a swing [rad] without its tail, or a
+/// margin around it, over an obstacle.
+bool turns_clear(const JobSettings& settings, const BasePose& base, double swing);
+
+/// Stations of one lane group, moved along their line so that the machine turns clear from each to
+/// its dump and no gap is left between what is dug from them; one that cannot stays.
+/// @param ground  before the job
+std::vector<JobStation> clear_of_obstacles(std::vector<JobStation> stations, const JobFrame& frame,
+                                           const JobSettings& settings, const JobMap& map,
+                                           const Terrain& ground);
 
 }  // namespace excavplan

@@ -12,7 +12,6 @@
 
 #include "base/angles.hpp"
 #include "base/statistics.hpp"
-#include "job/clear_stations.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
