@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include "base/angles.hpp"
+
 /// @file
 /// Lines and polygons in plan. Private to the project.
 
@@ -45,6 +47,18 @@ inline bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::
     if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
   }
   return inside;
+}
+
+/// Whether it lies in a polygon with eight places so far around it.
+inline bool is_well_in(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& at,
+                       double margin) {
+  constexpr int ways = 8;
+  for (int i = 0; i < ways; ++i) {
+    const double angle = 2.0 * pi * i / ways;
+    if (!is_inside(polygon, at + margin * Eigen::Vector2d(std::cos(angle), std::sin(angle))))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace excavplan

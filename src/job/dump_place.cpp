@@ -60,16 +60,6 @@ bool fits(const JobMap& map, const Vector2d& place, double radius) {
   return true;
 }
 
-/// In a polygon, and so far from its border.
-bool is_well_in(const SitePolygon& area, const Vector2d& at, double margin) {
-  constexpr int ways = 8;
-  for (int i = 0; i < ways; ++i) {
-    const double angle = 2.0 * pi * i / ways;
-    if (!is_inside(area, at + margin * Vector2d(std::cos(angle), std::sin(angle)))) return false;
-  }
-  return true;
-}
-
 /// How far from the swing axis the pin of the bucket comes at a height over the ground [m].
 double pin_reach(const Machine& machine, double height) {
   const double boom = machine.boom_length, arm = machine.arm_length;
@@ -126,12 +116,13 @@ class HeapLayer {
       : map_(map),
         ground_(ground),
         repose_(std::tan(settings.site.soil.angle_of_repose)),
-        volume_(heaped_capacity(settings.site.machine)) {}
+        volume_(heaped_capacity(settings.site.machine)),
+        cone_(heap_height(settings)) {}
 
   Heap lay(const Vector2d& place) const {
     const auto at = cell_at(map_.target, place.x(), place.y());
-    double low = surface(*at);
-    double high = low + std::cbrt(3.0 * volume_ * repose_ * repose_ / pi);
+    double low = surface_of(ground_, *at);
+    double high = low + cone_;
     for (int i = 0; i < halvings; ++i) {
       const double top = 0.5 * (low + high);
       (volume(place, top) < volume_ ? low : high) = top;
@@ -140,17 +131,13 @@ class HeapLayer {
   }
 
  private:
-  double surface(Cell at) const {
-    return ground_.bank.z(at.row, at.col) + ground_.loose(at.row, at.col);
-  }
-
   /// The cells about a place, with their distance from it [m].
   template <typename Visit>
   void for_each_about(const Vector2d& place, double radius, Visit visit) const {
     for (double x = -radius; x <= radius; x += heap_step) {
       for (double y = -radius; y <= radius; y += heap_step) {
         const auto at = cell_at(map_.target, place.x() + x, place.y() + y);
-        if (at && !std::isnan(surface(*at))) visit(*at, std::hypot(x, y));
+        if (at && !std::isnan(surface_of(ground_, *at))) visit(*at, std::hypot(x, y));
       }
     }
   }
@@ -158,7 +145,7 @@ class HeapLayer {
   double volume(const Vector2d& place, double top) const {
     double sum = 0.0;
     for_each_about(place, farthest_run, [&](Cell at, double away) {
-      sum += std::max(0.0, top - repose_ * away - surface(at));
+      sum += std::max(0.0, top - repose_ * away - surface_of(ground_, at));
     });
     return heap_step * heap_step * sum;
   }
@@ -169,13 +156,13 @@ class HeapLayer {
     double all = 0.0;
     for_each_about(place, farthest_run + edge_of_cut, [&](Cell at, double away) {
       const auto reaches = [&](double margin) {
-        return top - repose_ * std::max(0.0, away - margin) > surface(at);
+        return top - repose_ * std::max(0.0, away - margin) > surface_of(ground_, at);
       };
       const bool is_cut = !std::isnan(map_.target.z(at.row, at.col));
       const bool is_untouched = map_.untouched(at.row, at.col);
       if ((is_cut && reaches(edge_of_cut)) || (is_untouched && reaches(off_keep_out)))
         heap.is_allowed = false;
-      const double height = std::max(0.0, top - repose_ * away - surface(at));
+      const double height = std::max(0.0, top - repose_ * away - surface_of(ground_, at));
       all += height;
       if (!map_.dump(at.row, at.col)) heap.outside += height;
     });
@@ -187,6 +174,7 @@ class HeapLayer {
   const Terrain& ground_;
   double repose_;
   double volume_;
+  double cone_;  ///< height of a bucket of soil on level ground [m]
 };
 
 bool is_near_area(const JobMap& map, const Vector2d& place) {
@@ -239,7 +227,7 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
     const auto at = cell_at(map.target, place.x(), place.y());
     if (!at || !map.dump(at->row, at->col)) return;
     const double loose = ground.loose(at->row, at->col);
-    const double surface = ground.bank.z(at->row, at->col) + loose;
+    const double surface = surface_of(ground, *at);
     if (std::isnan(surface)) return;
     const double cost = std::abs(turn) + height_price * std::max(0.0, surface - base.z);
     if (cost >= least || !fits(map, place, (loose + cone) / repose)) return;

@@ -106,9 +106,12 @@ Scan first_scan(const JobDesign& design) {
   return scan;
 }
 
+double surface_of(const Terrain& ground, Cell at) {
+  return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col);
+}
+
 double above_design(const JobMap& map, const Terrain& ground, Cell at) {
-  return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col) -
-         map.target.z(at.row, at.col);
+  return surface_of(ground, at) - map.target.z(at.row, at.col);
 }
 
 JobMap map_of(const JobSettings& settings, const HeightMap& ground) {

@@ -23,6 +23,9 @@ struct JobMap {
   Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none
 };
 
+/// Height of a ground, with the soil that lies on it; NaN where it is not known [m].
+double surface_of(const Terrain& ground, Cell at);
+
 /// Of a ground over the design; NaN beside it, or where either is not known [m].
 double above_design(const JobMap& map, const Terrain& ground, Cell at);
 

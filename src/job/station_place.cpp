@@ -31,10 +31,6 @@ constexpr double most_back_at_end = 0.8;  // of the first, which still reaches t
 constexpr double edge_step = 0.1;         // of an obstacle's outline
 constexpr double most_gap = 0.1;          // between what is dug from two places in succession
 
-double surface(const Terrain& ground, Cell at) {
-  return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col);
-}
-
 double distance_to(const SitePolygon& polygon, const Vector2d& from) {
   double least = is_inside(polygon, from) ? 0.0 : (polygon.front() - from).norm();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -80,11 +76,11 @@ bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& 
   const auto& machine = on.settings.site.machine;
   for_each_under({frame, station, machine, off_cut}, on.map.target, [&](const auto& cell) {
     if (!cell) return;
-    free &= !(surface(on.first, *cell) - surface(on.now, *cell) > deepest_rut);
+    free &= !(surface_of(on.first, *cell) - surface_of(on.now, *cell) > deepest_rut);
   });
   for_each_under({frame, station, machine}, on.map.target, [&](const auto& cell) {
     free &= cell && !on.map.untouched(cell->row, cell->col) &&
-            !(surface(on.now, *cell) - surface(on.first, *cell) > highest_soil);
+            !(surface_of(on.now, *cell) - surface_of(on.first, *cell) > highest_soil);
   });
   return free;
 }

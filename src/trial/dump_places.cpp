@@ -23,17 +23,6 @@ constexpr double nearest = 3.0;       // from the swing axis
 constexpr double spare = 0.2;         // of the reach
 constexpr double of_height = 0.7;     // swing that a metre of heap is worth [rad/m]
 
-/// In a polygon, and so far from its border.
-bool is_well_in(const SitePolygon& area, const Eigen::Vector2d& at, double margin) {
-  for (int i = 0; i < 8; ++i) {
-    const double angle = 0.25 * pi * i;
-    if (!is_inside(area, {at.x() + margin * std::cos(angle), at.y() + margin * std::sin(angle)})) {
-      return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 double pin_reach(const Machine& machine, double height) {
