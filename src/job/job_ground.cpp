@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <utility>
 
-#include <excavplan/simulation/dig_along.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "job/noisy_scan.hpp"
+#include "job/step_search.hpp"
 #include "site/site_survey.hpp"
 
 namespace excavplan {
@@ -28,6 +28,8 @@ constexpr double noisy = 0.5;            // of what they share, over the toleran
 constexpr double changed = 0.003;        // by a dig [m]
 constexpr double dug_sd = 0.012;         // of what a bucket leaves [m]
 constexpr double risen_share = 0.5;      // likewise of what rose, over its height
+constexpr double softer = 0.5;           // than the soil before, the next that is tried
+constexpr double softest = 0.05;         // over the soil as told
 
 /// Of all that was cut, with the soil that lies on it again.
 std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
@@ -99,6 +101,18 @@ void forget_changed(const Terrain& before, const TerrainPatch& patch, Eigen::Arr
 
 }  // namespace
 
+DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const DigLine& line,
+                    const DigPath& path) {
+  const Machine& machine = settings.site.machine;
+  const SoilVoids voids = soil_voids(settings.site.soil, settings.density_percent);
+  for (double strength = 1.0;; strength *= softer) {
+    const HeightMapSimulator simulator(machine, with_strength(settings.site.soil, strength),
+                                       settings.density_percent);
+    DigResult dig = dig_along(simulator, machine, ground, {line, voids, path});
+    if (!dig.stall || strength < softest) return dig;
+  }
+}
+
 JobGround::JobGround(const std::string& folder, const JobSettings& settings)
     : folder_(folder), settings_(settings), site_(folder, settings.site, SiteAccess::write) {}
 
@@ -123,13 +137,9 @@ void JobGround::doubt_changed(const Eigen::ArrayXXd& before) {
 }
 
 void JobGround::dig(const JobStep& step, double height_bias) {
-  const Machine& machine = settings_.site.machine;
-  const SoilKind& soil = settings_.site.soil;
-  const HeightMapSimulator simulator(machine, soil, settings_.density_percent);
   DigLine line = dig_line(step.base, step.swung, step.lane);
   line.z += height_bias;
-  const SoilVoids voids = soil_voids(soil, settings_.density_percent);
-  const DigResult result = dig_along(simulator, machine, expected_, {line, voids, step.path});
+  const DigResult result = whole_dig(settings_, expected_, line, step.path);
   forget_changed(expected_, result.patch, seen_);
   apply(result.patch, expected_);
   const bool carries = step.carried && !step.dumps_first;

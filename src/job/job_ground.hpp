@@ -7,6 +7,7 @@
 
 #include <excavplan/job/job_settings.hpp>
 #include <excavplan/job/job_step.hpp>
+#include <excavplan/simulation/dig_along.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/site/site.hpp>
 
@@ -26,6 +27,11 @@ struct ScanNews {
   double cut_sd = 0.0;                 ///< of that, by what the scan's points share [m]
   std::optional<Alignment> alignment;  ///< SiteUpdate
 };
+
+/// A dig of a job to its end: where the soil as told would stall it, in one as much softer as lets
+/// it through.
+DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const DigLine& line,
+                    const DigPath& path);
 
 /// The site of a job with the digs that no scan has shown yet: where a scan does not see what was
 /// dug, it stays as foretold.

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include <excavplan/simulation/dig_along.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"
 #include "base/plan_geometry.hpp"
 #include "base/text.hpp"
+#include "job/job_ground.hpp"
 #include "job/job_map.hpp"
 #include "planning/motion_load.hpp"
 
@@ -69,21 +68,18 @@ Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLi
 /// What the dig loads the joints with, and the ground that it leaves, in the frame of the way.
 DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobStep& step,
                 const DigLine& line) {
-  const Machine& machine = settings.site.machine;
-  const SoilKind& soil = settings.site.soil;
-  const HeightMapSimulator simulator(machine, soil, settings.density_percent);
-  const SoilVoids voids = soil_voids(soil, settings.density_percent);
-  const DigResult dig = dig_along(simulator, machine, ground,
-                                  {dig_line(step.base, step.swung, step.lane), voids, step.path});
+  const DigResult dig =
+      whole_dig(settings, ground, dig_line(step.base, step.swung, step.lane), step.path);
   Terrain after = ground;
   apply(dig.patch, after);
   DigLoad load;
   if (!dig.stall) load.torques = dig.torques;
-  load.carried = step.carried ? loose_mass(soil, step.carried->volume) : 0.0;
+  load.carried = step.carried ? loose_mass(settings.site.soil, step.carried->volume) : 0.0;
   load.payload_mass = std::max(dig.payload_mass, step.predicted.payload_mass) +
                       (step.dumps_first ? 0.0 : load.carried);
-  load.ground_after =
-      GroundAlong(after, line, swing_extent(machine), motion_cell).terrain().surface();
+  load.ground_after = GroundAlong(after, line, swing_extent(settings.site.machine), motion_cell)
+                          .terrain()
+                          .surface();
   return load;
 }
 

@@ -8,11 +8,14 @@
 #include <memory>
 
 #include <excavplan/job/job_motion.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/trial/job_score.hpp>
 
 #include "base/angles.hpp"
 #include "base/statistics.hpp"
 #include "job/dump_place.hpp"
+#include "job/job_ground.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
@@ -788,6 +791,26 @@ TEST(JobGround, WhatADigChangedIsNotSeenUntilAScanSeesIt) {
   job.look(of.truth.scan(), of.truth.time() + 1.0);
   EXPECT_GT(job.progress().seen, dug);
   EXPECT_LE(job.progress().seen, of.truth.seen_share(footprint_of(of.hidden)) + 0.03);
+}
+
+TEST(JobGround, ADigThatDidNotStallIsExpectedToItsEnd) {
+  HandMadeJob job;
+  const SoilKind loam = job.settings.site.soil;
+  const Machine& machine = job.settings.site.machine;
+  const auto made = make_dig_path(machine, {0.6, 0.5, 1.5}, 6.5, boom_plane_profile(job.ground));
+  const auto& path = std::get<DigPath>(made);
+  const DigLine line = dig_line({}, 0.0, 0.0);
+  const auto dug = [&](double strength) {
+    job.settings.site.soil = with_strength(loam, strength);
+    return whole_dig(job.settings, job.ground, line, path);
+  };
+  const HeightMapSimulator hard(machine, with_strength(loam, 10.0), job.settings.density_percent);
+  const SoilVoids voids = soil_voids(loam, job.settings.density_percent);
+  ASSERT_TRUE(dig_along(hard, machine, job.ground, {line, voids, path}).stall);
+  const DigResult in_soft = dug(1.0), in_hard = dug(10.0);
+  ASSERT_FALSE(in_soft.stall);
+  EXPECT_FALSE(in_hard.stall);
+  EXPECT_NEAR(in_hard.payload_volume, in_soft.payload_volume, 0.1 * in_soft.payload_volume);
 }
 
 /// Of level ground, seen from 3 m above the origin.
