@@ -35,9 +35,9 @@ class DensityBelief {
   explicit DensityBelief(const BeliefSettings& settings = {},
                          const std::vector<DigEvidence>& digs = {},
                          std::optional<DigEvidence> forgotten = {});
-  DensityBelief(const DensityBelief& other);
-  DensityBelief(DensityBelief&& other) noexcept;
-  DensityBelief& operator=(DensityBelief other) noexcept;
+  DensityBelief(const DensityBelief& other);               ///< a copy has readings of its own
+  DensityBelief(DensityBelief&& other) noexcept;           ///< `other` is as one without readings
+  DensityBelief& operator=(DensityBelief other) noexcept;  ///< copies or moves
   ~DensityBelief();
 
   /// Learns from a dig.
@@ -49,7 +49,7 @@ class DensityBelief {
   /// default settings.
   void refit();
 
-  const BeliefSettings& settings() const { return settings_; }
+  const BeliefSettings& settings() const { return settings_; }  ///< as begun or refitted
   /// Oldest first, their banks condensed().
   const std::vector<DigEvidence>& digs() const { return digs_; }
   /// The oldest dig that the last add() made it forget.
@@ -61,7 +61,7 @@ class DensityBelief {
   BelievedMeans means_of(const std::vector<std::vector<BankPart>>& parts) const;
   /// Of one part, for planning; not trustworthy before anything is learnt.
   GroundDensity ground_density(const std::vector<BankPart>& part) const;
-  CommonStates common_states() const;
+  CommonStates common_states() const;  ///< errors that all readings share, as they are believed
 
   /// Each reading less what was foretold of it by all before it, in standard deviations: normal and
   /// independent where the settings are those of the ground. Without limits.

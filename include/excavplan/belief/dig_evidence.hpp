@@ -79,7 +79,7 @@ struct LimitReading {
 struct DigEvidence {
   std::vector<BankPart> bank = {};  ///< undisturbed soil that it cut; empty: none
   double bank_share = 1.0;  ///< of all soil that it cut, 0 .. 1; below a third: no news of density
-  std::optional<SurveyReading> survey = {};
+  std::optional<SurveyReading> survey = {};        ///< of two scans; nothing if there was none
   std::optional<Measured> payload_percent = {};    ///< density_of_bank() of payload and bank
   std::vector<ResistanceReading> resistance = {};  ///< energy, loads of joints
   std::vector<LimitReading> limits = {};           ///< stalls, joints at their limit

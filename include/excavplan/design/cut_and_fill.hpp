@@ -22,8 +22,8 @@ struct GroundErrors {
 
 /// Settings of cut_and_fill().
 struct CutOptions {
-  GroundErrors errors = {};
-  double tolerance = 0.03;  ///< of the finished ground, to either side [m], > 0
+  GroundErrors errors = {};  ///< of the scan
+  double tolerance = 0.03;   ///< of the finished ground, to either side [m], > 0
   /// The rim of the design and faces steeper than `steepest` do not count for the deviation, nor
   /// what is nearer to them than this [m], >= 0.
   double edge_margin = 0.1;
@@ -44,12 +44,12 @@ struct Deviation {
 
 /// What is to be moved until the ground has the shape of its design.
 struct CutAndFill {
-  Measured cut;               ///< ground above the design [m^3]
-  Measured fill;              ///< missing ground below it [m^3]; 0 of a design that only cuts
-  double area = 0.0;          ///< in plan, of the part on the map of the ground [m^2]
-  double unseen_area = 0.0;   ///< of it, of unknown ground, filled from around [m^2]
-  double outside_area = 0.0;  ///< beside the map of the ground, not measured [m^2]
-  Deviation deviation;
+  Measured cut;                    ///< ground above the design [m^3]
+  Measured fill;                   ///< missing ground below it [m^3]; 0 of a design that only cuts
+  double area = 0.0;               ///< in plan, of the part on the map of the ground [m^2]
+  double unseen_area = 0.0;        ///< of it, of unknown ground, filled from around [m^2]
+  double outside_area = 0.0;       ///< beside the map of the ground, not measured [m^2]
+  Deviation deviation;             ///< of cut and fill by what they come from
   std::vector<std::string> notes;  ///< what of it is doubtful
 };
 

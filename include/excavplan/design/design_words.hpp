@@ -21,9 +21,9 @@ enum class DesignKind {
 
 /// A trench, a pit or the cut of a slope along a line.
 struct DesignWords {
-  DesignKind kind = DesignKind::trench;
-  double length = 0.0;       ///< of the floor along the line [m], > 0
-  double floor_width = 0.0;  ///< of a slope, to the right of the line [m], > 0
+  DesignKind kind = DesignKind::trench;  ///< trench, pit or slope
+  double length = 0.0;                   ///< of the floor along the line [m], > 0
+  double floor_width = 0.0;              ///< of a slope, to the right of the line [m], > 0
   /// Of the floor in the middle of the line, below the mean of the ground along it [m].
   std::optional<double> depth = {};
   std::optional<double> floor_z = {};  ///< of that place instead [m]

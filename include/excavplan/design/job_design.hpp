@@ -29,21 +29,22 @@ struct KeepOut {
 
 /// What stands on the ground.
 struct JobObstacle {
-  std::string kind;
-  SitePolygon polygon;
+  std::string kind;     ///< as it is told, such as "pole"
+  SitePolygon polygon;  ///< in plan [m]
   double height = 0.0;  ///< over the ground [m], > 0
 };
 
 /// Where soil is laid on the ground.
 struct DumpArea {
+  /// A ridge along its longer side, or one pile.
   enum class Kind { windrow, heap };
-  Kind kind = Kind::windrow;
-  SitePolygon polygon;
+  Kind kind = Kind::windrow;  ///< of what is laid
+  SitePolygon polygon;        ///< where soil may lie, in plan [m]
 };
 
 /// A truck that is loaded.
 struct JobTruck {
-  SitePolygon bed;
+  SitePolygon bed;           ///< in plan [m]
   double bed_height = 0.0;   ///< of its upper edge over the ground [m], > 0
   double target_mass = 0.0;  ///< of a load [kg], > 0
 };
@@ -57,17 +58,17 @@ struct SensorErrors {
 
 /// A job as its description says it.
 struct JobDesign {
-  std::string name;
-  std::optional<DesignWords> words = {};  ///< the design in words
-  std::string design_file = {};           ///< or its file; empty: none
-  std::string scan_file = {};             ///< the first scan; empty: none
-  double tolerance = 0.03;                ///< [m], > 0
-  double edge_margin = 0.1;               ///< CutOptions::edge_margin [m]
-  std::optional<BasePose> start = {};     ///< z: 0
-  std::vector<KeepOut> keep_out = {};
-  std::vector<JobObstacle> obstacles = {};
-  std::vector<DumpArea> dump_areas = {};
-  std::optional<JobTruck> truck = {};
+  std::string name;                         ///< of the job, for people
+  std::optional<DesignWords> words = {};    ///< the design in words
+  std::string design_file = {};             ///< or its file; empty: none
+  std::string scan_file = {};               ///< the first scan; empty: none
+  double tolerance = 0.03;                  ///< [m], > 0
+  double edge_margin = 0.1;                 ///< CutOptions::edge_margin [m]
+  std::optional<BasePose> start = {};       ///< z: 0
+  std::vector<KeepOut> keep_out = {};       ///< what is not touched
+  std::vector<JobObstacle> obstacles = {};  ///< what stands there
+  std::vector<DumpArea> dump_areas = {};    ///< where soil is laid; in their order
+  std::optional<JobTruck> truck = {};       ///< to which soil goes instead, if there is one
   std::optional<SensorErrors> sensor = {};  ///< of the scans during the job
 };
 

@@ -10,10 +10,10 @@ namespace excavplan {
 
 /// Settings of best_full_dig().
 struct FullDigOptions {
-  SimulatorKind simulator = default_simulator();
-  int evaluations = 600;  ///< of the search; ours
-  double full = 0.95;     ///< least share of the heaped capacity of a full bucket; ours
-  unsigned threads = 0;   ///< 0: one per core; the same result for any number
+  SimulatorKind simulator = default_simulator();  ///< that digs
+  int evaluations = 600;                          ///< of the search; ours
+  double full = 0.95;    ///< least share of the heaped capacity of a full bucket; ours
+  unsigned threads = 0;  ///< 0: one per core; the same result for any number
 };
 
 /// With this the full dig swings and dumps, as job references say.

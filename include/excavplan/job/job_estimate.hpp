@@ -35,7 +35,7 @@ JobShape shape_on_level_ground(DesignWords words);
 
 /// A job before its first bucket.
 struct JobOutline {
-  JobShape shape;
+  JobShape shape;                     ///< of the design over the ground
   GroundDensity density{50.0, 25.0};  ///< of the bank; unless told, ours
   double truck_mass = 15000.0;        ///< of a load [kg], > 0; ours
 };
@@ -54,8 +54,8 @@ struct EstimateSpread {
 
 /// A figure that is log-normal.
 struct EstimatedFigure {
-  double value = 0.0;
-  EstimateSpread spread;
+  double value = 0.0;     ///< in the unit of the figure
+  EstimateSpread spread;  ///< of that value
 
   std::array<double, 2> interval() const;  ///< 95 %
 };
@@ -75,14 +75,14 @@ struct JobEstimate {
   double reference_time = 0.0;      ///< of these [s]
   std::vector<std::string> unlike;  ///< in what the job differs from those played
 
-  bool trustworthy() const { return unlike.empty(); }
+  bool trustworthy() const { return unlike.empty(); }  ///< whether played jobs were like this one
 };
 
 /// What estimates rest on.
 struct EstimateBasis {
-  FuelModel fuel;     ///< of the machine's engine
-  PlayedJobs played;  ///< jobs by which the reference is scaled
-  FullDigOptions full_dig = {};
+  FuelModel fuel;                ///< of the machine's engine
+  PlayedJobs played;             ///< jobs by which the reference is scaled
+  FullDigOptions full_dig = {};  ///< of the best full dig, by which energy and time are foretold
 };
 
 /// Swollen volume over the payload of the best full dig, times what played jobs took over that.

@@ -38,17 +38,17 @@ struct JobEvent {
   Eigen::Vector3d dump = Eigen::Vector3d::Zero();  ///< JobStep::dump, of a dig
   bool keeps_load = false;                         ///< JobStep::keeps_load: there was no dump
   std::optional<int> truck;                        ///< that was loaded
-  bool stalled = false;
-  bool scanned = false;  ///< the ground was scanned in it, or after it
-  bool trustworthy = true;
-  std::vector<Warning> warnings;
-  std::string reason;        ///< JobStep::reason
-  double left_volume = 0.0;  ///< of the design after it [m^3]
+  bool stalled = false;                            ///< the machine did not finish its path
+  bool scanned = false;                            ///< the ground was scanned in it, or after it
+  bool trustworthy = true;                         ///< as its step
+  std::vector<Warning> warnings;                   ///< of the step, and of a scan that came with it
+  std::string reason;                              ///< JobStep::reason
+  double left_volume = 0.0;                        ///< of the design after it [m^3]
 
   CellPatch surface;  ///< of JobHistory::before after it [m]
   CellPatch seen_at;  ///< JobHistory::seen_at after it [s]
 
-  bool digs() const { return excavplan::digs(what); }
+  bool digs() const { return excavplan::digs(what); }  ///< whether it is a dig, for volume or shape
 };
 /// What step and report say of a step: nothing of the ground, and as its time what was foretold.
 JobEvent event_of(const JobStep& step, const StepReport& report);
@@ -56,20 +56,21 @@ JobEvent event_of(const JobStep& step, const StepReport& report);
 /// A job from its first ground to the last step done. Heights are kept in millimetres, of each step
 /// only the cells between those that it changed.
 struct JobHistory {
-  JobDesign design;
+  JobDesign design;            ///< as it was told when the job began
   double design_volume = 0.0;  ///< to be taken out before the first step [m^3]
   HeightMap target;            ///< height of the design; NaN outside of its footprint [m]
   HeightMap before;  ///< surface before the first step, on the same grid; NaN: not known [m]
   Eigen::ArrayXXd
       seen_at;         ///< when a cell was last seen then, since 1970-01-01 UTC [s]; NaN: never
   double begin = 0.0;  ///< since 1970-01-01 UTC [s]
-  std::vector<JobEvent> events;
+  std::vector<JobEvent> events;  ///< in their order
 
-  /// The ground after so many events. @throws Error (bad_input) if there are fewer
+  /// The ground at one time.
   struct Ground {
     HeightMap surface;        ///< as `before`
     Eigen::ArrayXXd seen_at;  ///< likewise
   };
+  /// After so many events. @throws Error (bad_input) if there are fewer
   Ground ground(std::size_t events_done) const;
   /// Hands on the ground before the first event and after each, with the number of events done.
   void play(const std::function<void(std::size_t, const Ground&)>& visit) const;
@@ -88,7 +89,7 @@ class JobRecorder {
   /// Takes the last events back until so many are left.
   void cut(std::size_t events);
 
-  const JobHistory& history() const { return history_; }
+  const JobHistory& history() const { return history_; }  ///< so far
   const JobHistory::Ground& now() const { return now_; }  ///< after the last event
 
  private:

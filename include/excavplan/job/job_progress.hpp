@@ -14,11 +14,11 @@ struct JobProgress {
   double seen = 0.0;           ///< share of the design that was seen [-]
   bool is_finished = false;    ///< within the tolerance (Deviation), 99 % of it seen
   int digs = 0;                ///< for volume
-  int finishing_passes = 0;
-  int moves = 0;
-  int scans = 0;
-  int stalls = 0;
-  double payload_mass = 0.0;  ///< lifted in all [kg]
+  int finishing_passes = 0;    ///< among the digs
+  int moves = 0;               ///< of the machine
+  int scans = 0;               ///< that were taken in
+  int stalls = 0;              ///< among the digs
+  double payload_mass = 0.0;   ///< lifted in all [kg]
 };
 
 }  // namespace excavplan

@@ -69,8 +69,8 @@ struct JobStep {
   std::vector<Warning> warnings;       ///< about this step
   std::string reason;                  ///< of a scan, a wait or a stop
 
-  bool digs() const { return excavplan::digs(what); }
-  bool moves_front() const { return digs() || dumps_first; }
+  bool digs() const { return excavplan::digs(what); }  ///< whether it is a dig, for volume or shape
+  bool moves_front() const { return digs() || dumps_first; }  ///< whether boom, arm or bucket move
 };
 
 /// What became of a step.

@@ -9,7 +9,7 @@ namespace excavplan {
 
 /// A job that was played against hidden truth, over its reference (JobReference).
 struct PlayedJob {
-  std::string soil;
+  std::string soil;              ///< by its name
   double density_percent = 0.0;  ///< mean of the true one [%]
   double digs = 0.0;             ///< over those of the reference [-]
   double time = 0.0;             ///< likewise, with moves and scans
@@ -19,7 +19,7 @@ struct PlayedJob {
 
 /// Jobs of one kind: upright trenches of one size, by one machine.
 struct PlayedJobs {
-  std::string machine;
+  std::string machine;          ///< by its name
   double length = 0.0;          ///< [m]
   double width = 0.0;           ///< [m]
   double depth = 0.0;           ///< [m]

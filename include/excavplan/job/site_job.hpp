@@ -36,8 +36,8 @@ class SiteJob : public JobPlanner {
   /// @throws Error (bad_file) if it holds none, or a file of it is damaged
   static SiteJob resume(const std::string& folder, JobSettings settings);
   ~SiteJob() override;
-  SiteJob(SiteJob&&) noexcept;
-  SiteJob& operator=(SiteJob&&) noexcept;
+  SiteJob(SiteJob&&) noexcept;             ///< the other may only be destroyed then
+  SiteJob& operator=(SiteJob&&) noexcept;  ///< the same
 
   JobStep next() override;
   void done(long long step, const StepReport& report) override;
@@ -51,6 +51,7 @@ class SiteJob : public JobPlanner {
   /// Of the last scan that this object took in, such as scan_not_taken.
   const std::vector<Warning>& scan_warnings() const;
 
+  /// How far the job is, by the ground as it is expected.
   JobProgress progress() const;
   /// What was done so far, with the ground as expected after each step.
   const JobHistory& history() const;

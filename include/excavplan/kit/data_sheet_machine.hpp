@@ -27,8 +27,8 @@ struct FittedNumber {
 
 /// A machine from a data sheet.
 struct FittedMachine {
-  MachineFile file;  ///< each number names its source; warns data_sheet_fitted
-  std::vector<FittedNumber> numbers;
+  MachineFile file;                   ///< each number names its source; warns data_sheet_fitted
+  std::vector<FittedNumber> numbers;  ///< each fitted one, with its spread
 };
 
 /// The shipped machines: "generic-mini", "zx120", "zx200", "generic-20t".

@@ -14,6 +14,7 @@ struct BasePose {
   double heading = 0.0;  ///< of the machine's x axis from that of the site, to the left [rad]
 
   Eigen::Isometry3d site_from_machine() const;  ///< level: a heading and a shift
+  /// Whether it is that of the frame itself.
   bool is_origin() const { return x == 0.0 && y == 0.0 && z == 0.0 && heading == 0.0; }
 };
 

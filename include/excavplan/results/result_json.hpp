@@ -47,6 +47,7 @@ std::string to_json(const std::string& file, const RecordingContents& contents);
 
 /// What plan-site asks of the machine, and how far its job has come.
 std::string to_json(const JobStep& step);
+/// As `plan-site show --json` prints it.
 std::string to_json(const JobProgress& progress);
 
 /// What a survey is expected to measure, and what it needs for an error of the density of so many

@@ -49,7 +49,7 @@ class GroundAlong {
   GroundAlong(const Terrain& site, DigLine line, const Rectangle& extent, double cell_size);
 
   const Terrain& terrain() const { return along_; }  ///< to dig on: x along the line, z of the path
-  const DigLine& line() const { return line_; }
+  const DigLine& line() const { return line_; }      ///< along which it lies
 
   /// Makes a dig of terrain() one of the site: its patch is of the site's cells. What happened to a
   /// cell of the view happens to those cells of the site whose centre is in it: they are lowered to
@@ -70,7 +70,7 @@ Rectangle extent_along(const Machine& machine, const DigPath& path);
 
 /// A dig of a site.
 struct LineDig {
-  DigLine line;
+  DigLine line;     ///< in which the path lies
   SoilVoids voids;  ///< of the soil that is dug
   DigPath path;     ///< in the frame of the line
 };

@@ -37,7 +37,6 @@ class Site {
   Site& operator=(Site&&) noexcept;  ///< the same
 
   /// Takes in a scan. One that does not fit the ground where that did not change is not taken.
-  /// @param threads  0: one per core; the same bytes for any number
   /// @throws Error (bad_input) if the site is open for reading, or the scan was taken in before, is
   /// older than the last one, or would make the site larger than most_site_cells; as
   /// estimate_density()

@@ -16,9 +16,9 @@ inline constexpr double most_site_cells = 5e6;
 
 /// What holds for all digs of a site.
 struct SiteSettings {
-  SoilKind soil;
-  Machine machine;
-  DensityLaw law;
+  SoilKind soil;    ///< of the bank
+  Machine machine;  ///< that digs there
+  DensityLaw law;   ///< by which bulking tells density
   /// Edge of the cells, which never changes [m]; unset: that of the site, or usual_cell().
   std::optional<double> cell_size;
   std::string frame = {};  ///< name of the site's frame; empty: not told

@@ -34,12 +34,12 @@ struct SiteSensor {
 
 /// What a planner may know of a site.
 struct SiteBrief {
-  JobDesign job;
-  DesignSurface design;
+  JobDesign job;                      ///< what is asked for
+  DesignSurface design;               ///< its surface
   SoilKind soil;                      ///< the product's of that name, with the site's own numbers
   GroundDensity density{50.0, 25.0};  ///< what is known of it before the first dig
   std::string machine = "zx120";      ///< name of its class
-  SiteSensor sensor;
+  SiteSensor sensor;                  ///< as it is mounted, with its errors
 };
 
 /// Where the bank is how dense.
@@ -67,11 +67,11 @@ struct HiddenErrors {
 
 /// A site with its truth.
 struct HiddenSite {
-  SiteBrief known;
-  Terrain ground;  ///< at the start, in the site's frame, with void ratios of the bank
-  SoilKind soil;   ///< as it is
-  TrueDensity density;
-  HiddenErrors errors;
+  SiteBrief known;       ///< what a planner is told
+  Terrain ground;        ///< at the start, in the site's frame, with void ratios of the bank
+  SoilKind soil;         ///< as it is
+  TrueDensity density;   ///< of the bank
+  HiddenErrors errors;   ///< of machine, scale and soil
   HeightMap first_scan;  ///< first scan as cells; NaN: not seen
 };
 

@@ -21,8 +21,8 @@ struct PlainPolicy {
   std::string word;  ///< "operator"
   /// Ours: the paper's path or one searched once, for level ground of the expected density,
   /// unaware of the floor. Else layers down to the floor, and a pass along it at the end.
-  enum class Digs { fixed, searched, layers } digs = Digs::layers;
-  double station = 2.7;      ///< between places to stand [m]
+  enum class Digs { fixed, searched, layers } digs = Digs::layers;  ///< of what kind
+  double station = 2.7;                                             ///< between places to stand [m]
   double farthest = 6.2;     ///< of the tip from the swing axis where a station begins [m]
   double layer = 0.25;       ///< [m]
   double after_stall = 0.7;  ///< share of the layer that is tried next [-]

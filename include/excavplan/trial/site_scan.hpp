@@ -28,6 +28,7 @@ struct SiteLooks {
   double spacing = 0.03;        ///< least between returns of one plane, on level ground [m]
   Eigen::Vector2d step{0, 0};   ///< between rays, across and, at least, along the tilt [rad]
 };
+/// Where it looks from, and how far.
 SiteLooks looks_of(const SiteSensor& sensor);
 
 /// Length along the ground over which the errors that neighbouring returns share are alike:

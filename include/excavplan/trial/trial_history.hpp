@@ -13,13 +13,15 @@ namespace excavplan {
 /// the truth. Volumes are those of the truth.
 class TrialRecorder {
  public:
+  /// Of a trial on that site.
   explicit TrialRecorder(const HiddenSite& site);
   ~TrialRecorder();
-  TrialRecorder(TrialRecorder&&) noexcept;
-  TrialRecorder& operator=(TrialRecorder&&) noexcept;
+  TrialRecorder(TrialRecorder&&) noexcept;             ///< the other may only be destroyed then
+  TrialRecorder& operator=(TrialRecorder&&) noexcept;  ///< the same
 
   /// For TrialOptions::each.
   void add(const TrialStep& at);
+  /// Of all that was recorded.
   const JobHistory& history() const;
 
  private:

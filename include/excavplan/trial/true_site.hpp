@@ -33,19 +33,19 @@ struct TruthOptions {
   SimulatorKind simulator = default_simulator();  ///< that digs; planners use their own
   std::uint64_t seed = 1;                         ///< of all draws
   bool scans_each_dig = false;                    ///< a scan is made after each dig as well
-  MoveCost move = {};
-  double scan_time = 3.0;   ///< [s]
-  double wait_time = 60.0;  ///< of JobAction::wait; ours [s]
+  MoveCost move = {};                             ///< of each move
+  double scan_time = 3.0;                         ///< [s]
+  double wait_time = 60.0;                        ///< of JobAction::wait; ours [s]
 };
 
 /// What a step did, and cost.
 struct TrueStep {
-  StepReport report;          ///< what the planner is told
-  double time = 0.0;          ///< of the whole cycle, the move or the scan [s]
-  double scan_time = 0.0;     ///< of a scan, part of it [s]
-  double energy = 0.0;        ///< of the joints over it [J]
-  double payload_mass = 0.0;  ///< true [kg]
-  std::optional<Stall> stall;
+  StepReport report;           ///< what the planner is told
+  double time = 0.0;           ///< of the whole cycle, the move or the scan [s]
+  double scan_time = 0.0;      ///< of a scan, part of it [s]
+  double energy = 0.0;         ///< of the joints over it [J]
+  double payload_mass = 0.0;   ///< true [kg]
+  std::optional<Stall> stall;  ///< of a dig that the machine did not finish
 };
 
 /// Dry mass that was moved [kg]: cut = lying + hauled, to rounding.
@@ -71,8 +71,8 @@ class TrueSite {
   /// @throws Error (bad_input) as require_machine() and SimulatorKind::make()
   TrueSite(const HiddenSite& site, const Machine& machine, const TruthOptions& options = {});
   ~TrueSite();
-  TrueSite(TrueSite&&) noexcept;
-  TrueSite& operator=(TrueSite&&) noexcept;
+  TrueSite(TrueSite&&) noexcept;             ///< the other may only be destroyed then
+  TrueSite& operator=(TrueSite&&) noexcept;  ///< the same
 
   /// Does a step. @throws Error (bad_input) naming the step, if its path or its dump leave the
   /// ground, or the dump is out of reach
@@ -80,10 +80,13 @@ class TrueSite {
   /// A scan from where the machine stands.
   Scan scan();
 
+  /// As it truly is now.
   const Terrain& ground() const;
   const BasePose& known_base() const;  ///< where the machine is said to stand
+  /// Where the machine truly stands.
   const BasePose& true_base() const;
   double time() const;  ///< since 1970-01-01 UTC [s]
+  /// From the first dig on.
   const SolidsLedger& solids() const;
   /// When cells of ground() were last seen, since 1970-01-01 UTC [s]; NaN: never.
   const Eigen::ArrayXXd& seen_at() const;
