@@ -376,7 +376,7 @@ class Master(unittest.TestCase):
             file.writelines(f"{x:.2f} {y:.2f} 0\n" for x in places for y in places)
         for surroundings in ("", around):
             with Node(scans=1, density_percent=40.0, density_sd_percent=2.0, whole_cycle=True,
-                      surroundings=surroundings) as node:
+                      surroundings=surroundings, joint_age_seconds=60.0) as node:
                 node.send_until("points", cloud(points_of("before")), "before 1 of 1")
                 node.stand([-0.6, 1.6, 0.5, 0.4])
                 answer = node.call("plan", Plan)
