@@ -39,7 +39,7 @@ constexpr double least_allowance = -0.4;     // likewise
 constexpr double most_of_floor = 0.5;        // in tolerances: else passes did not come so far
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 16;              // along the floor from one station
-constexpr int most_fruitless = 6;            // passes in succession that took nothing off
+constexpr int most_fruitless = 4;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
 constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
@@ -49,13 +49,14 @@ constexpr double most_undug = 0.3;           // share of such cells where passes
 constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
+constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
 constexpr double high_share = 1.0;           // of the tolerance: higher cells call for a pass
 constexpr double most_high = 0.03;           // share of cells that may stay so
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
 constexpr double least_seen = 0.99;         // of a finished design
-constexpr double well_seen = 0.999;         // of it, so that no more is looked for
+constexpr double well_seen = 0.992;         // of it, so that no more is looked for
 constexpr int most_softer = 4;  // deviations of the strength below its mean that are tried
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
 constexpr double after_stall = 0.7;          // of the depth of a cut
@@ -138,13 +139,14 @@ struct SiteJob::State {
     map = map_of(settings, first.bank);
     design = map.target.z;
     frame = work_frame(settings, map, first);
+    const std::vector<JobStation> beyond = places_beyond();
     stations = stations_of(frame, settings);
-    if (is_one_group(stations))
+    if (is_one_group(stations)) {
+      if (!beyond.empty()) stations = stations_of(frame, settings, true);
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
-    const JobStation last = stations.back();
-    for (JobStation& beyond : stations_beyond(frame, settings)) {
-      if (!frame.is_battered && can_dig_from(beyond)) stations.push_back(std::move(beyond));
     }
+    const JobStation last = stations.back();
+    stations.insert(stations.end(), beyond.begin(), beyond.end());
     const JobStation lookout;
     stations.insert(stations.end(),
                     {lookout, lookout, lookout, lookout, last, lookout, lookout, lookout, lookout});
@@ -163,6 +165,16 @@ struct SiteJob::State {
 
   JobFrame frame_at(const JobStation& station) const {
     return station.is_beyond ? reversed(frame) : frame;
+  }
+
+  /// From which the far end of an upright design can be dug.
+  std::vector<JobStation> places_beyond() const {
+    std::vector<JobStation> places;
+    if (frame.is_battered) return places;
+    for (JobStation& each : stations_beyond(frame, settings)) {
+      if (can_dig_from(each)) places.push_back(std::move(each));
+    }
+    return places;
   }
 
   /// Stand there before the job, and dump.
@@ -411,7 +423,8 @@ void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const 
     if (!map.counts(cell.row, cell.col)) return;
     const Eigen::Vector2d place = line.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
     if (place.x() < range.near || place.x() > range.far) return;
-    if (place.x() + at.x() < station.shapes_from) return;
+    const double along = place.x() + at.x();
+    if (along < station.shapes_from || along > station.shapes_to) return;
     if (place.y() < station.lanes.front() - at.y() - half) return;
     if (place.y() <= station.lanes.back() - at.y() + half) visit(cell);
   });
@@ -583,10 +596,13 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   int& fruitless = finishing ? record.fruitless : record.fruitless_digs;
   const bool is_fruitless = report.stalled || lifted < least;
   fruitless = is_fruitless ? fruitless + 1 : 0;
-  if (is_fruitless && (finishing || stations[record.station].is_wide)) {
+  // A single one may do with a new depth or strength.
+  const bool is_again = finishing || stations[record.station].is_wide || fruitless > 1;
+  if (is_fruitless && is_again) {
     const double view = frame_at(stations[record.station]).heading - step.base.heading;
     record.barren.push_back({step.lane, step.path.start_x, wrapped(step.swung - view)});
   }
+  if (!finishing && lifted < poor_dig * step.predicted.payload_mass) record.wants_scan = true;
   progress.payload_mass += lifted;
   if (report.stalled) {
     ++progress.stalls;
