@@ -11,7 +11,7 @@ namespace excavplan::tools {
 
 void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
   arguments.positional("BEFORE", inputs.before,
-                       "cloud before the dig: PCD, PLY, LAS, GeoTIFF, ASCII grid or XYZ, or " +
+                       "cloud before the dig: PCD, PLY, LAS, GeoTIFF, ASCII grid, OBJ or XYZ, or " +
                            std::string(recording_form) +
                            "; one cloud alone is that after it, on a --site");
   arguments.positional("AFTER", inputs.after, "cloud after the dig");
