@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/calibration/calibration.hpp>
+#include <excavplan/results/result_json.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -9,6 +10,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 
@@ -82,9 +84,9 @@ void bind_density(py::module_& module) {
       .def_readonly("trustworthy", &RelativeDensity::trustworthy,
                     "False: outside 0 .. 100 % by more than the error explains.")
       .def_readonly("warnings", &RelativeDensity::warnings)
-      .def("__repr__", [](const RelativeDensity& d) {
-        return shown("RelativeDensity", {{"percent", d.percent}, {"sd_percent", d.sd_percent}});
-      });
+      .def(
+          "to_json", [](const RelativeDensity& density) { return to_json(density); },
+          "The density as estimate-density prints it with --json.");
   py::class_<GroundDensity>(module, "GroundDensity",
                             "The relative density of the ground, as far as it is known, for plans.")
       .def(py::init([](double percent, double sd_percent, bool trustworthy, std::string soil) {
@@ -100,10 +102,7 @@ void bind_density(py::module_& module) {
       .def_readonly("sd_percent", &GroundDensity::sd_percent, "Standard deviation [points].")
       .def_readonly("trustworthy", &GroundDensity::trustworthy,
                     "False: who estimated it does not trust it.")
-      .def_readonly("soil", &GroundDensity::soil, "Of the law that gave it; empty: unknown.")
-      .def("__repr__", [](const GroundDensity& d) {
-        return shown("GroundDensity", {{"percent", d.percent}, {"sd_percent", d.sd_percent}});
-      });
+      .def_readonly("soil", &GroundDensity::soil, "Of the law that gave it; empty: unknown.");
   py::implicitly_convertible<py::float_, GroundDensity>();
   py::implicitly_convertible<py::int_, GroundDensity>();
 }
@@ -190,7 +189,13 @@ void bind_soil(py::module_& module) {
                              "Of the cut, shape (N,) [-]; 0 where unknown.")
       .def(
           "to_json", [](const DensityCalibration& c) { return to_json(c); },
-          "The text of a law file, which load_density_law() reads.");
+          "The text of a law file, which load_density_law() reads.")
+      .def(
+          "plot",
+          [](const DensityCalibration& c, const std::optional<File>& file) {
+            return plotted(file, [&](ImageFormat format) { return law_image(c, format); });
+          },
+          arg("file") = py::none(), "A Picture; file: also written to, .svg, .png or .pdf.");
   module.def("fit_density_law", &fitted, arg("bulking_factors"), arg("densities_percent"),
              "Fits a law to measured digs of known density: bulking factors [-] and relative\n"
              "densities [%], both of shape (N,).");
