@@ -3,6 +3,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/results/result_json.hpp>
+#include <excavplan/soil/compaction.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -62,6 +63,15 @@ void bind_soil_kind(py::module_& module) {
       .def(
           "loose_state", [](const SoilKind& soil) { return loose_state(soil); },
           "State of dug soil.")
+      .def(
+          "compaction",
+          [](const SoilKind& soil, double d, double proctor) {
+            RelativeDensity density;
+            density.percent = d;
+            return compaction_of(soil, density, proctor).percent;
+          },
+          arg("density_percent"), arg("proctor_density"),
+          "Dry density over the largest of a Proctor test of this soil [kg/m^3], in [%].")
       .def(
           "bulking_of_density",
           [](const SoilKind& soil, double d) { return bulking_of_density(soil, d); },

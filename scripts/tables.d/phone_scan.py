@@ -37,6 +37,16 @@ def smoothed(heights, cells):
     return heights
 
 
+def heights_at(x, y, heights, at_x, at_y):
+    """Bilinear."""
+    column = numpy.clip((at_x - x[0]) / (x[1] - x[0]), 0, len(x) - 1.001)
+    row = numpy.clip((at_y - y[0]) / (y[1] - y[0]), 0, len(y) - 1.001)
+    i, j = row.astype(int), column.astype(int)
+    u, v = row - i, column - j
+    return ((1 - u) * ((1 - v) * heights[i, j] + v * heights[i, j + 1]) +
+            u * ((1 - v) * heights[i + 1, j] + v * heights[i + 1, j + 1]))
+
+
 @dataclass
 class Mesh:
     vertices: numpy.ndarray  # shape (N, 3), y up [m]
@@ -52,9 +62,8 @@ def scanned(grid, edge, scale_sd, random):
     at_x, at_y = numpy.meshgrid(columns, rows)
     at_x = at_x + random.uniform(-0.3, 0.3, at_x.shape) * edge
     at_y = at_y + random.uniform(-0.3, 0.3, at_y.shape) * edge
-    column = numpy.clip(numpy.rint((at_x - x[0]) / (x[1] - x[0])).astype(int), 0, len(x) - 1)
-    row = numpy.clip(numpy.rint((at_y - y[0]) / (y[1] - y[0])).astype(int), 0, len(y) - 1)
-    points = numpy.stack([at_x, at_y, heights[row, column] + random.normal(0, NOISE, at_x.shape)], -1)
+    at_z = heights_at(x, y, heights, at_x, at_y) + random.normal(0, NOISE, at_x.shape)
+    points = numpy.stack([at_x, at_y, at_z], -1)
     points = points.reshape(-1, 3) * (1.0 + random.normal(0, scale_sd))
     turn = random.normal(0, TURN)
     turned = points @ numpy.array([[math.cos(turn), math.sin(turn), 0],
