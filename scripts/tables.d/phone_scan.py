@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
 """Scans of a phone, simulated from the true ground: a mesh of triangles, smoothed as its app fuses depth
-images, with noise, an error of its scale, and a place and direction of its own; y up, in centimetres or
+images, with noise, an error of its scale, a bend, and a place and direction of its own; y up, in centimetres or
 metres.
 
-Numbers of our own choice: noise 3 mm a vertex; the mesh is smooth over the edge of its triangles; a phone
-that is started from a mark stands there to 3 cm and 1 degree.
+Numbers of our own choice: noise 3 mm a vertex; the mesh is smooth over the edge of its triangles; as the
+scale drifts, so does the height, by as much of the way at 4 m from the middle; a phone that is started from
+a mark stands there to 3 cm and 1 degree.
 """
 import math
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 import numpy
 
 NOISE, PLACE, TURN = 0.003, 0.03, math.radians(1.0)  # [m], [m], [rad], standard deviations
+BEND = 4.0  # [m]
 
 
 def read_grid(path):
@@ -65,6 +67,8 @@ def scanned(grid, edge, scale_sd, random):
     at_z = heights_at(x, y, heights, at_x, at_y) + random.normal(0, NOISE, at_x.shape)
     points = numpy.stack([at_x, at_y, at_z], -1)
     points = points.reshape(-1, 3) * (1.0 + random.normal(0, scale_sd))
+    across = ((points[:, :2] - points[:, :2].mean(0)) ** 2).sum(1)
+    points[:, 2] += random.normal(0, scale_sd) * across / BEND
     turn = random.normal(0, TURN)
     turned = points @ numpy.array([[math.cos(turn), math.sin(turn), 0],
                                    [-math.sin(turn), math.cos(turn), 0], [0, 0, 1]])
