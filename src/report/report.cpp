@@ -103,6 +103,10 @@ std::string html_page(const Report& report, const ReportedRun& run) {
       {"result", xml_escaped(run.json)},
       {"data", body.data},
       {"style", shipped("vendor/uplot.css") + shipped("style.css")},
+      {"contains", body.draws
+                       ? " It contains three.js and uPlot (MIT licence, texts in the source of "
+                         "the page)."
+                       : ""},
       {"vendor", body.draws ? shipped("vendor/vendor.js") : ""},
       {"app", body.scripts}};
   return filled("page.html", parts);

@@ -323,7 +323,8 @@ std::string matrix_table(const std::string& name, const Json& matrix) {
     }
     rows += "</tr>\n";
   }
-  return table(words_of(stem_of(name)) + (unit.empty() ? "" : " [" + unit + "]"), head, rows);
+  return table(words_of(stem_of(name)) + (unit.empty() ? "" : " [" + unit + "]"), head, rows,
+               matrix.front().size() > 3);  // ours
 }
 
 bool is_list_of_objects(const Json& value) {

@@ -16,8 +16,6 @@ struct JobPrices {
   std::optional<double> fuel = {};       ///< per litre, >= 0
   std::optional<double> hour = {};       ///< of machine and operator, without fuel, >= 0
   std::optional<double> truckload = {};  ///< haul and tip of one, >= 0
-
-  bool any() const { return fuel || hour || truckload; }
 };
 
 struct JobCost {
