@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.24)
 # and base.
 set(rooms base optimisation ground change soil belief machine earth simulation sensing calibration planning
   kit clouds design scans logs efficiency images recording density site job trial paper experiments results maps drawing
-  figures robot)
+  figures report robot)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
@@ -43,14 +43,15 @@ set(results_may_use ground change soil machine simulation sensing calibration pl
 set(maps_may_use ground change simulation sensing planning)
 set(drawing_may_use ground machine)
 set(figures_may_use
-  change soil machine simulation sensing planning kit density efficiency experiments results drawing)
+  ground change soil machine simulation sensing planning kit density job efficiency experiments results drawing)
+set(report_may_use
+  ground change machine simulation sensing planning density job trial results drawing figures)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density site
   results)
 
 # The rooms of the tools; what lies in the folder of a tool is its own.
-set(tool_rooms frame report inputs)
+set(tool_rooms frame inputs)
 set(frame_may_use "")
-set(report_may_use frame)
 set(inputs_may_use frame)
 
 # Where a third-party header may be included: in no public header any of them, and in every benchmark,

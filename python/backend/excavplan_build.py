@@ -67,6 +67,11 @@ def cmake_arguments(settings):
             for word in text.split()]
 
 
+def precompiled():
+    """ON without a compiler cache, which takes no files with precompiled headers."""
+    return "OFF" if "CMAKE_CXX_COMPILER_LAUNCHER" in os.environ else "ON"
+
+
 def staged(settings):
     """Builds the package and installs it. Gives the folder that holds it."""
     build = ROOT / f"build-python-{tag()}"
@@ -74,6 +79,7 @@ def staged(settings):
     run("cmake", "-S", ROOT, "-B", build, *generator,
         "-D", "CMAKE_BUILD_TYPE=Release", "-D", "BUILD_SHARED_LIBS=OFF",
         "-D", "EXCAVPLAN_PYTHON=ON", "-D", "EXCAVPLAN_TOOLS=OFF", "-D", "EXCAVPLAN_TESTS=OFF",
+        "-D", f"EXCAVPLAN_PRECOMPILED={precompiled()}",
         # Where the library finds its data: share/excavplan beside the module.
         "-D", f"CMAKE_INSTALL_LIBDIR={NAME}", "-D", f"CMAKE_INSTALL_DATADIR={NAME}/share",
         "-D", f"Python_EXECUTABLE={sys.executable}", *cmake_arguments(settings))

@@ -7,5 +7,8 @@ has its origin on the machine's swing axis at ground level, x forward, y left, z
 of NumPy where it is installed, else memoryviews; both are read-only.
 """
 
+from . import _core, _show
 from ._core import *  # noqa: F403
 from ._core import __all__, __version__  # noqa: F401
+
+_show.dress(_core)

@@ -4,9 +4,11 @@
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/ground/resampling.hpp>
+#include <excavplan/results/result_json.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 
@@ -40,16 +42,15 @@ void bind_height_map(py::module_& module) {
       .def_readonly("x_max", &Rectangle::x_max, "[m]")
       .def_readonly("y_max", &Rectangle::y_max, "[m]")
       .def("contains", &Rectangle::contains, arg("x"), arg("y"),
-           "True for points inside and on the lower edges.")
-      .def("__repr__", [](const Rectangle& r) {
-        return shown(
-            "Rectangle",
-            {{"x_min", r.x_min}, {"y_min", r.y_min}, {"x_max", r.x_max}, {"y_max", r.y_max}});
-      });
-  py::class_<HeightMap>(module, "HeightMap",
-                        "Heights of the ground on a regular grid, seen from above.\n\n"
-                        "Cell (row, col) is the square whose corner of smallest x and y is at\n"
-                        "origin + cell_size * (col, row); NaN where no scan has seen it.")
+           "True for points inside and on the lower edges.");
+  py::class_<HeightMap> bound(
+      module, "HeightMap",
+      "Heights of the ground on a regular grid, seen from above.\n\n"
+      "Cell (row, col) is the square whose corner of smallest x and y is at\n"
+      "origin + cell_size * (col, row); NaN where no scan has seen it.");
+  bind_numbers(bound, "The heights, shape (rows, columns), NaN where unknown [m].",
+               [](const HeightMap& of) { return array(of.z); });
+  bound
       .def(py::init(&made_map), arg("z"), arg("origin") = py::make_tuple(0.0, 0.0),
            arg("cell_size") = 0.05,
            "z: heights, shape (rows along y, columns along x) [m], copied; origin: corner of\n"
@@ -84,9 +85,15 @@ void bind_height_map(py::module_& module) {
           },
           arg("extent"), arg("cell_size"), arg("widest_gap") = 0.0,
           "The surface on another grid, bilinear; gaps up to widest_gap [m] are filled first.")
+      .def(
+          "plot",
+          [](const HeightMap& map, const std::optional<File>& file) {
+            return plotted(file, [&](ImageFormat format) { return ground_image(map, format); });
+          },
+          arg("file") = py::none(), "A Picture; file: also written to, .svg, .png or .pdf.")
       .def("__repr__", [](const HeightMap& map) {
         return "<HeightMap of " + std::to_string(map.z.rows()) + " x " +
-               std::to_string(map.z.cols()) + " cells of " + number(map.cell_size) + " m>";
+               std::to_string(map.z.cols()) + " cells of " + rounded(map.cell_size) + " m>";
       });
   module.def("flat_ground", &flat_ground, arg("extent"), arg("cell_size") = 0.05,
              arg("height") = 0.0, "Level ground [m] that covers at least `extent`.");
@@ -99,10 +106,7 @@ void bind_results(py::module_& module) {
            }),
            arg("value"), arg("sd") = 0.0)
       .def_readonly("value", &Measured::value, "In the unit of the figure.")
-      .def_readonly("sd", &Measured::sd, "Standard deviation, likewise.")
-      .def("__repr__", [](const Measured& m) {
-        return shown("Measured", {{"value", m.value}, {"sd", m.sd}});
-      });
+      .def_readonly("sd", &Measured::sd, "Standard deviation, likewise.");
   py::class_<ChangeZone>(module, "ChangeZone",
                          "A connected piece of ground that changed by more than the noise.")
       .def_property_readonly(
@@ -147,6 +151,9 @@ void bind_results(py::module_& module) {
                     "One for a whole scene, two for a dig and a dump area.")
       .def_readonly("attribution", &VolumeChange::attribution, "Changes that are open.")
       .def_readonly("warnings", &VolumeChange::warnings)
+      .def(
+          "to_json", [](const VolumeChange& change) { return to_json(change); },
+          "The volumes as estimate-density prints them with --json.")
       .def(
           "bulking_factor", [](const VolumeChange& change) { return bulking_factor(change); },
           "k = after / before with its standard deviation [-]; None without hole or heap.")

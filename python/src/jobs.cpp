@@ -6,12 +6,14 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/job/job_motion.hpp>
 #include <excavplan/job/job_order.hpp>
+#include <excavplan/report/report_pages.hpp>
 #include <excavplan/soil/soil_scatter.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
 #include "arrays.hpp"
 #include "clock.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "scans.hpp"
 #include "texts.hpp"
@@ -363,6 +365,14 @@ void bind_looking(JobClass& job) {
           "Of the last scan that was taken in.")
       .def_property_readonly(
           "settings", [](const JobInPython& of) { return of.settings(); }, "JobSettings.")
+      .def(
+          "report",
+          [](JobInPython& of, const File& file) {
+            write_bytes(file, of.with([&](SiteJob& own) {
+              return report_page(own.progress(), own.history(), of.settings().site.machine);
+            }));
+          },
+          arg("file"), "Writes the page of plan-site show --report.")
       .def("__repr__", [](const JobInPython& of) {
         const JobSettings& settings = of.settings();
         return text("<SiteJob " + settings.design.name + ": " + settings.site.machine.name +

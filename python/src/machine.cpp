@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 #include "words.hpp"
@@ -27,11 +28,7 @@ void bind_machine_itself(py::module_& module) {
            arg("x"), arg("z"), arg("floor_angle"))
       .def_readonly("x", &BucketPose::x, "[m]")
       .def_readonly("z", &BucketPose::z, "[m]")
-      .def_readonly("floor_angle", &BucketPose::floor_angle, "[rad]")
-      .def("__repr__", [](const BucketPose& pose) {
-        return shown("BucketPose",
-                     {{"x", pose.x}, {"z", pose.z}, {"floor_angle", pose.floor_angle}});
-      });
+      .def_readonly("floor_angle", &BucketPose::floor_angle, "[rad]");
   py::class_<JointLimits>(module, "JointLimits", "What a joint can do.")
       .def_readonly("lower", &JointLimits::lower, "[rad]")
       .def_readonly("upper", &JointLimits::upper, "[rad]")
@@ -106,6 +103,12 @@ void bind_machine_itself(py::module_& module) {
             return std::nullopt;
           },
           arg("pose"), "Joint angles (boom, arm, bucket) of a pose [rad]; None out of reach.")
+      .def(
+          "plot",
+          [](const Machine& m, const std::optional<File>& file) {
+            return plotted(file, [&](ImageFormat format) { return reach_image(m, format); });
+          },
+          arg("file") = py::none(), "A Picture; file: also written to, .svg, .png or .pdf.")
       .def("__repr__", [](const Machine& m) { return "<Machine " + m.name + ">"; });
   module.def(
       "load_machine",
@@ -123,6 +126,11 @@ Eigen::Vector3d numbers_of_pose(const BucketPose& pose) {
   return {pose.x, pose.z, pose.floor_angle};
 }
 
+Array tips_of(const DigPath& path) {
+  return array_of_rows(path.poses,
+                       [](const DigPose& pose) { return numbers_of_pose(pose.bucket); });
+}
+
 GroundProfile profile_of(const std::optional<HeightMap>& ground) {
   if (ground) return boom_plane_profile(*ground);
   return [](double) { return 0.0; };
@@ -137,15 +145,12 @@ void bind_path(py::module_& module) {
       .def_readonly("penetration_angle", &DigParameters::penetration_angle,
                     "Of the line of penetration below the horizontal [rad].")
       .def_readonly("penetration_length", &DigParameters::penetration_length, "[m]")
-      .def_readonly("drag_length", &DigParameters::drag_length, "Towards the machine [m].")
-      .def("__repr__", [](const DigParameters& p) {
-        return shown("DigParameters", {{"penetration_angle", p.penetration_angle},
-                                       {"penetration_length", p.penetration_length},
-                                       {"drag_length", p.drag_length}});
-      });
-  py::class_<DigPath>(module, "DigPath",
-                      "A dig that the machine can drive: poses in the order of the visit.")
-      .def_readonly("parameters", &DigPath::parameters, "That it was made from.")
+      .def_readonly("drag_length", &DigParameters::drag_length, "Towards the machine [m].");
+  py::class_<DigPath> bound_path(
+      module, "DigPath", "A dig that the machine can drive: poses in the order of the visit.");
+  bind_numbers(bound_path, "x, z of the tip [m] and floor angle [rad] of each pose, shape (N, 3).",
+               &tips_of);
+  bound_path.def_readonly("parameters", &DigPath::parameters, "That it was made from.")
       .def_readonly("start_x", &DigPath::start_x, "Where the tip meets the ground [m].")
       .def_readonly("ground_z", &DigPath::ground_z, "Height of the ground there [m].")
       .def_property_readonly(
@@ -157,13 +162,8 @@ void bind_path(py::module_& module) {
       .def_property_readonly(
           "joints", [](const DigPath& path) { return joints_of(path.poses); },
           "Boom, arm, bucket, shape (N, 3) [rad].")
-      .def_property_readonly(
-          "bucket",
-          [](const DigPath& path) {
-            return array_of_rows(path.poses,
-                                 [](const DigPose& pose) { return numbers_of_pose(pose.bucket); });
-          },
-          "x, z of the tip [m] and floor angle [rad], shape (N, 3).")
+      .def_property_readonly("bucket", &tips_of,
+                             "x, z of the tip [m] and floor angle [rad], shape (N, 3).")
       .def_property_readonly(
           "approach", [](const DigPath& path) { return joints_of(path.approach); },
           "Joints on the way down, shape (M, 3) [rad]; M is 0 unless planned.")
@@ -219,8 +219,17 @@ Array columns(const JointMotion& motion, std::vector<double> JointPoint::*values
 
 void bind_trajectory(py::module_& module) {
   using Point = TrajectoryPoint;
-  py::class_<Trajectory>(module, "Trajectory", "A timed dig path, or the motion of a plan.")
-      .def_readonly("machine", &Trajectory::machine, "Its name.")
+  py::class_<Trajectory> bound_trajectory(module, "Trajectory",
+                                          "A timed dig path, or the motion of a plan.");
+  bind_numbers(bound_trajectory, "Time [s], boom, arm, bucket and swing [rad], shape (N, 5).",
+               [](const Trajectory& t) {
+                 return rows(t, [](const Point& p) -> Eigen::Matrix<double, 5, 1> {
+                   return (Eigen::Matrix<double, 5, 1>() << p.time, p.joints[0], p.joints[1],
+                           p.joints[2], p.swing.angle)
+                       .finished();
+                 });
+               });
+  bound_trajectory.def_readonly("machine", &Trajectory::machine, "Its name.")
       .def_readonly("warnings", &Trajectory::warnings, "Of plan_motion().")
       .def_property_readonly("duration", &Trajectory::duration, "Of all points [s].")
       .def_property_readonly("dig_duration", &Trajectory::dig_duration,
@@ -300,10 +309,12 @@ void bind_trajectory(py::module_& module) {
       arg("torques") = std::vector<JointAngles>{},
       "Times a path as fast as the machine allows. speed_fraction: of its limits, in (0, 1];\n"
       "corner_tolerance: distance from the path at corners [m]; torques: DigResult.torques [N m].");
-  py::class_<JointMotion>(
+  py::class_<JointMotion> bound_motion(
       module, "JointMotion",
-      "A trajectory for a controller, in the names and angles of the robot; M joints.")
-      .def_readonly("names", &JointMotion::names, "Of the joints that have one.")
+      "A trajectory for a controller, in the names and angles of the robot; M joints.");
+  bind_numbers(bound_motion, "The positions, shape (N, M) [rad].",
+               [](const JointMotion& m) { return columns(m, &JointPoint::positions); });
+  bound_motion.def_readonly("names", &JointMotion::names, "Of the joints that have one.")
       .def_property_readonly(
           "time",
           [](const JointMotion& m) {

@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include "arrays.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 
 namespace excavplan::python {
@@ -36,6 +37,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__name__") = "excavplan";
   bind_arrays(module);
   bind_errors(module);
+  bind_pictures(module);
   bind_ground(module);
   bind_soil(module);
   bind_machine(module);
@@ -48,6 +50,7 @@ PYBIND11_MODULE(_core, module) {
   bind_site(module);
   bind_job_steps(module);
   bind_jobs(module);
+  bind_estimates(module);
   bind_trial(module);
   module.attr("__name__") = own_name;
   forbid_empty_objects(module);

@@ -4,12 +4,14 @@
 #include <excavplan/planning/goal_words.hpp>
 #include <excavplan/planning/plan_motion.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/report/report_pages.hpp>
 #include <excavplan/results/result_json.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "plans.hpp"
 #include "rooms.hpp"
 #include "simulators.hpp"
@@ -132,7 +134,25 @@ void bind_search(py::module_& module) {
            "simulator in Python; start: known digs to begin with; start_rule: 'search', 'work',\n"
            "'margin' or the x of the start [m]; method: 'default' or 'paper'; checkpoint, resume:\n"
            "a file that holds the digs made; progress: is called with a SearchProgress, and what\n"
-           "it returns ends the search if it is false and not None.");
+           "it returns ends the search if it is false and not None.")
+      .def_property_readonly(
+          "objective", [](const SearchOptionsInPython& o) { return o.options.objective; },
+          "DigObjective.")
+      .def_property_readonly(
+          "evaluations", [](const SearchOptionsInPython& o) { return o.options.stop.evaluations; },
+          "Digs at most; 0: as usual.")
+      .def_property_readonly(
+          "seconds", [](const SearchOptionsInPython& o) { return o.options.stop.seconds; },
+          "At most [s]; 0: no limit.")
+      .def_property_readonly(
+          "seed", [](const SearchOptionsInPython& o) { return o.options.seed; },
+          "Same seed, same result.")
+      .def_property_readonly(
+          "threads", [](const SearchOptionsInPython& o) { return o.options.threads; },
+          "0: one per core.")
+      .def_property_readonly(
+          "checkpoint", [](const SearchOptionsInPython& o) { return File{o.options.checkpoint}; },
+          "File of the digs made; empty: none.");
 }
 
 // ---- digs ---------------------------------------------------------------------------------------
@@ -148,12 +168,7 @@ void bind_digs(py::module_& module) {
       .def_readonly("fill", &PlannedDig::fill, "Payload volume over the heaped capacity [-].")
       .def_readonly("cycle_energy", &PlannedDig::cycle_energy, "[J]; 0: not known.")
       .def_readonly("cycle_time", &PlannedDig::cycle_time, "[s]; 0: not known.")
-      .def_property_readonly("efficiency", &PlannedDig::efficiency, "Mass per energy [kg/J].")
-      .def("__repr__", [](const PlannedDig& dig) {
-        return shown(
-            "PlannedDig",
-            {{"payload_mass", dig.payload_mass}, {"energy", dig.energy}, {"start_x", dig.start_x}});
-      });
+      .def_property_readonly("efficiency", &PlannedDig::efficiency, "Mass per energy [kg/J].");
   py::class_<NearestDig>(module, "NearestDig", "What came nearest to a dig. It is false.")
       .def_readonly("parameters", &NearestDig::parameters, "Of its path.")
       .def_readonly("start_x", &NearestDig::start_x, "[m]; None if no start was found.")
@@ -230,6 +245,57 @@ void bind_cycle(py::module_& module) {
       .def_readonly("total", &DigCycle::total, "Of parts that overlap the longer counts.");
 }
 
+using PlanClass = py::class_<PlanInPython>;
+
+/// What `work` gives, which is told where to dig the plan once more.
+template <typename Work>
+auto rehearsed(const PlanInPython& plan, const Work& work) {
+  const auto own = std::make_shared<Call>();
+  const PlanContext& with = *plan.made_with;
+  const SimulatorKind simulator = simulator_kind(*with.simulator, own);
+  const PlanSite site = {with.soil, with.density.percent, with.ground, simulator};
+  return work(*own, site);
+}
+
+Picture plot_of(const PlanInPython& plan, const std::string& what,
+                const std::optional<File>& file) {
+  if (!plan.dig) throw Error(ErrorKind::bad_input, "there is no dig to draw: " + plan.reason);
+  const DigImage image = dig_image_of(what);
+  return rehearsed(plan, [&](Call& own, const PlanSite& site) {
+    return plotted(own, file, [&](ImageFormat format) {
+      return dig_image(plan.made_with->machine, plan, site, image, format);
+    });
+  });
+}
+
+void write_report(const PlanInPython& plan, const File& file) {
+  const PlanContext& with = *plan.made_with;
+  write_bytes(file, rehearsed(plan, [&](Call& own, const PlanSite& site) {
+                return own.run([&] {
+                  return report_page(with.machine, plan, site, with.density, with.objective);
+                });
+              }));
+}
+
+void bind_plan_views(PlanClass& bound) {
+  bound
+      .def("plot", &plot_of, arg("what") = "section", arg("file") = py::none(),
+           "A Picture of the dig, simulated once more.\n\n"
+           "what: 'section', 'forces', 'torques', 'power' or 'cylinders'; file: also written to,\n"
+           ".svg, .png or .pdf.")
+      .def("report", &write_report, arg("file"), "Writes the page of plan-path --report.")
+      .def(
+          "to_json",
+          [](const PlanInPython& plan, const std::optional<GroundDensity>& density,
+             const std::optional<DigObjective>& objective) {
+            return to_json(plan, density.value_or(plan.made_with->density),
+                           objective.value_or(plan.made_with->objective));
+          },
+          arg("density") = py::none(), arg("objective") = py::none(),
+          "The text that plan-path prints with --json, but for its options.\n\n"
+          "density, objective: else those that were planned for.");
+}
+
 void bind_plan(py::module_& module) {
   py::class_<DigSpread>(module, "DigSpread",
                         "Standard deviations of a dig's results as the density is uncertain.")
@@ -256,14 +322,16 @@ void bind_plan(py::module_& module) {
   py::class_<PlanLookUp>(module, "PlanLookUp", "Details of a look-up.")
       .def_readonly("slope", &PlanLookUp::slope, "Of the ground, as far as the library goes [rad].")
       .def_readonly("error", &PlanLookUp::error, "None on ground unlike the library's.");
-  py::class_<DigPlan>(module, "DigPlan", "The next dig, or why there is none.")
-      .def_readonly("dig", &DigPlan::dig, "Expected figures; None if there is no dig.")
+  py::class_<PlanInPython> bound(module, "DigPlan", "The next dig, or why there is none.");
+  bind_plan_views(bound);
+  bound.def_readonly("dig", &DigPlan::dig, "Expected figures; None if there is no dig.")
       .def_readonly("spread", &DigPlan::spread, "From the density's standard deviation.")
       .def_readonly("path", &DigPlan::path, "Of the dig, with its approach.")
       .def_readonly("cycle", &DigPlan::cycle, "None if the machine does not state what it needs.")
       .def_readonly("trajectory", &DigPlan::trajectory, "Of that path.")
       .def_property_readonly(
-          "method", [](const DigPlan& plan) { return name(plan.method); }, "'library' or 'search'.")
+          "method", [](const PlanInPython& plan) { return name(plan.method); },
+          "'library' or 'search'.")
       .def_readonly("start_rule", &DigPlan::start_rule, "Of the start, for people.")
       .def_readonly("evaluations", &DigPlan::evaluations, "Digs simulated for the plan.")
       .def_readonly("search", &DigPlan::search, "If searched.")
@@ -275,38 +343,34 @@ void bind_plan(py::module_& module) {
       .def_readonly("nearest", &DigPlan::nearest, "If a search found no dig.")
       .def_property_readonly(
           "attitude",
-          [](const DigPlan& plan) {
+          [](const PlanInPython& plan) {
             return Eigen::Vector2d(plan.attitude.roll, plan.attitude.pitch);
           },
-          "(roll, pitch) of the machine that it was planned for [rad].")
-      .def(
-          "to_json",
-          [](const DigPlan& plan, const GroundDensity& density,
-             const std::optional<DigObjective>& objective) {
-            return to_json(plan, density,
-                           objective.value_or(SearchOptionsInPython{}.options.objective));
-          },
-          arg("density"), arg("objective") = py::none(),
-          "The text that plan-path prints with --json, but for its options.\n\n"
-          "density: that was planned for; objective: that the dig was searched for, else the "
-          "usual.");
+          "(roll, pitch) of the machine that it was planned for [rad].");
 }
 
-DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
-                const std::optional<Terrain>& terrain, const std::string& method,
-                const std::optional<PathLibrary>& library,
-                const std::optional<SearchOptionsInPython>& search, const py::object& simulator,
-                double speed_fraction, std::optional<double> cell_size,
-                const Eigen::Vector2d& attitude, const std::optional<HeightMap>& standing_on) {
+PlanInPython planned(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                     const std::optional<Terrain>& terrain, const std::string& method,
+                     const std::optional<PathLibrary>& library,
+                     const std::optional<SearchOptionsInPython>& search,
+                     const py::object& simulator, double speed_fraction,
+                     std::optional<double> cell_size, const Eigen::Vector2d& attitude,
+                     const std::optional<HeightMap>& standing_on) {
   const auto own = std::make_shared<Call>();
   PlanOptions options = plan_options(own, {method, library, search, simulator, speed_fraction});
   options.cell_size = cell_size;
   options.attitude = {attitude.x(), attitude.y()};
   options.standing_on = standing_on;
-  return own->run([&] {
-    return terrain ? plan_dig(machine, soil, density, *terrain, options)
+  const Terrain ground =
+      terrain ? *terrain : level_planning_ground(machine, cell_size.value_or(usual_cell(machine)));
+  PlanInPython made;
+  static_cast<DigPlan&>(made) = own->run([&] {
+    return terrain ? plan_dig(machine, soil, density, ground, options)
                    : plan_dig(machine, soil, density, options);
   });
+  made.made_with = std::make_shared<const PlanContext>(
+      PlanContext{machine, soil, density, ground, shared(simulator), options.search.objective});
+  return made;
 }
 
 std::variant<Trajectory, BlockedWay> motion_of(const Machine& machine, const DigPlan& plan,
@@ -336,7 +400,7 @@ void bind_motion(py::module_& module) {
   const MotionOptions usual;
   module.def(
       "plan_motion",
-      [](const Machine& machine, const DigPlan& plan, const std::optional<Terrain>& terrain,
+      [](const Machine& machine, const PlanInPython& plan, const std::optional<Terrain>& terrain,
          const std::optional<FrontJoints>& start, bool whole_cycle, double swing,
          double dump_height, double rate, double speed_fraction, double corner_tolerance,
          double max_jerk) {

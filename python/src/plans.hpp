@@ -23,6 +23,21 @@ struct SearchOptionsInPython {
   py::object progress = py::none();
 };
 
+/// What a plan was made with: for its picture, its page and its JSON.
+struct PlanContext {
+  Machine machine;
+  SoilKind soil;
+  GroundDensity density;
+  Terrain ground;
+  std::shared_ptr<const py::object> simulator;
+  DigObjective objective;
+};
+
+/// DigPlan of Python.
+struct PlanInPython : DigPlan {
+  std::shared_ptr<const PlanContext> made_with;
+};
+
 /// Arguments that all calls share that plan a dig.
 struct PlanArguments {
   std::string method;

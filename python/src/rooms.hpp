@@ -25,6 +25,7 @@ void bind_site(pybind11::module_& module);
 /// What a job is ordered with, asks and is told.
 void bind_job_steps(pybind11::module_& module);
 void bind_jobs(pybind11::module_& module);
+void bind_estimates(pybind11::module_& module);
 void bind_trial(pybind11::module_& module);
 
 }  // namespace excavplan::python

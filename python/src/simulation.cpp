@@ -5,6 +5,7 @@
 #include <excavplan/ground/ground_state.hpp>
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/report/report_pages.hpp>
 #include <excavplan/results/result_json.hpp>
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
@@ -14,6 +15,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "simulators.hpp"
 #include "texts.hpp"
@@ -55,6 +57,8 @@ GroundState made_state(const Terrain& terrain, const std::optional<ArrayLike>& s
 
 /// A state is taken for its terrain, which is refused where a dig meets what it does not tell.
 void bind_ground_state(py::module_& module, py::class_<GroundState>& state) {
+  bind_numbers(state, "Heights of the surface, shape (rows, columns) [m].",
+               [](const GroundState& s) { return array(s.terrain.surface().z); });
   state
       .def(py::init(&made_state), arg("terrain"), arg("seen") = py::none(),
            arg("deviation") = py::none(), arg("frame") = "", arg("soil") = "",
@@ -74,6 +78,14 @@ void bind_ground_state(py::module_& module, py::class_<GroundState>& state) {
       .def("terrain_to_dig", &terrain_to_dig, arg("soil"), arg("density_percent"),
            "The terrain with the void ratios that the state does not tell: those of this density\n"
            "for the bank, the loosest for loose soil.")
+      .def(
+          "plot",
+          [](const GroundState& s, const std::optional<File>& file) {
+            return plotted(file, [&](ImageFormat format) {
+              return ground_image(s.terrain.surface(), format);
+            });
+          },
+          arg("file") = py::none(), "A Picture; file: also written to, .svg, .png or .pdf.")
       .def("after_dig", &after_dig, arg("after"),
            "The state with the terrain that a dig leaves, on the same grid.");
   py::implicitly_convertible<GroundState, Terrain>();
@@ -107,7 +119,10 @@ TerrainPatch made_patch(Eigen::Index row, Eigen::Index col, const ArrayLike& ban
 void bind_terrain(py::module_& module) {
   py::class_<GroundState> state(module, "GroundState",
                                 "What is known of the ground, carried from dig to dig.");
-  py::class_<Terrain>(module, "Terrain", "Ground in two layers on one grid.")
+  py::class_<Terrain> bound(module, "Terrain", "Ground in two layers on one grid.");
+  bind_numbers(bound, "Heights of the surface, shape (rows, columns) [m].",
+               [](const Terrain& t) { return array(t.surface().z); });
+  bound
       .def(py::init(&made_terrain), arg("bank"), arg("loose") = py::none(),
            arg("bank_void_ratio") = py::none(), arg("loose_void_ratio") = py::none(),
            arg("obstacles") = py::none(),
@@ -129,6 +144,13 @@ void bind_terrain(py::module_& module) {
           "obstacles", [](const Terrain& t) { return array(t.obstacles); },
           "Top of what stands on the ground, NaN where nothing does, shape (rows, columns) [m];\n"
           "empty: nothing anywhere.")
+      .def(
+          "plot",
+          [](const Terrain& t, const std::optional<File>& file) {
+            return plotted(file,
+                           [&](ImageFormat format) { return ground_image(t.surface(), format); });
+          },
+          arg("file") = py::none(), "A Picture; file: also written to, .svg, .png or .pdf.")
       .def("surface", &Terrain::surface, "bank + loose.");
   py::implicitly_convertible<HeightMap, Terrain>();
   bind_ground_state(module, state);
@@ -353,10 +375,16 @@ void bind_simulators(py::module_& module) {
 
 // ---- scenes -------------------------------------------------------------------------------------
 
-DigScene simulated(const Machine& machine, const SoilKind& soil, double density,
-                   const std::optional<Terrain>& terrain, const std::optional<DigParameters>& path,
-                   std::optional<double> start_x, const Eigen::Vector2d& dump_at,
-                   const py::object& simulator, double cell_size, bool planned) {
+/// DigScene of Python.
+struct SceneInPython : DigScene {
+  std::shared_ptr<const Machine> machine;
+};
+
+SceneInPython simulated(const Machine& machine, const SoilKind& soil, double density,
+                        const std::optional<Terrain>& terrain,
+                        const std::optional<DigParameters>& path, std::optional<double> start_x,
+                        const Eigen::Vector2d& dump_at, const py::object& simulator,
+                        double cell_size, bool planned) {
   const auto own = std::make_shared<Call>();
   SceneOptions options;
   options.path = path.value_or(options.path);
@@ -365,15 +393,16 @@ DigScene simulated(const Machine& machine, const SoilKind& soil, double density,
   options.history = true;
   options.simulator = simulator_kind(simulator, own);
   if (planned) options.rules = rules_for_planned_path();
-  return own->run([&] {
+  DigScene scene = own->run([&] {
     if (terrain) return run_scene(machine, soil, density, *terrain, options);
     require_simulated_cell(cell_size);
     const Terrain level = undisturbed(flat_ground(scene_extent(machine, dump_at), cell_size));
     return run_scene(machine, soil, density, level, options);
   });
+  return {std::move(scene), std::make_shared<const Machine>(machine)};
 }
 
-std::pair<Array, Array> scans_of(const DigScene& scene, std::uint64_t seed,
+std::pair<Array, Array> scans_of(const SceneInPython& scene, std::uint64_t seed,
                                  const std::optional<std::string>& sensor, int frames) {
   DepthCamera camera;
   if (sensor) camera = with_errors_of(sensor_of_word(*sensor), camera);
@@ -393,7 +422,7 @@ void bind_scene(py::module_& module) {
       .def_readonly("dumped", &HeightMapVolumes::dumped, "That rose at the heap [m^3].")
       .def_readonly("bulking_factor", &HeightMapVolumes::bulking_factor,
                     "(spilled + dumped) / excavated [-].");
-  py::class_<DigScene>(module, "DigScene", "One dig with the ground before and after it.")
+  py::class_<SceneInPython>(module, "DigScene", "One dig with the ground before and after it.")
       .def_readonly("soil", &DigScene::soil, "Its name.")
       .def_readonly("density_percent", &DigScene::density_percent, "[%]")
       .def_readonly("path", &DigScene::path, "That was dug.")
@@ -407,8 +436,30 @@ void bind_scene(py::module_& module) {
       .def_readonly("warnings", &DigScene::warnings)
       .def(
           "to_json",
-          [](const DigScene& scene, const Machine& machine) { return to_json(machine, scene); },
-          arg("machine"), "The text that simulate-dig prints with --json, but for its options.");
+          [](const SceneInPython& scene, const std::optional<Machine>& machine) {
+            return to_json(machine.value_or(*scene.machine), scene);
+          },
+          arg("machine") = py::none(),
+          "The text that simulate-dig prints with --json, but for its options; machine: else\n"
+          "that dug.")
+      .def(
+          "plot",
+          [](const SceneInPython& scene, const std::string& what, const std::optional<File>& file) {
+            const DigImage image = dig_image_of(what);
+            return plotted(file, [&](ImageFormat format) {
+              return dig_image(*scene.machine, scene, image, format);
+            });
+          },
+          arg("what") = "section", arg("file") = py::none(),
+          "A Picture.\n\n"
+          "what: 'section', 'forces', 'torques', 'power' or 'cylinders'; file: also written to,\n"
+          ".svg, .png or .pdf.")
+      .def(
+          "report",
+          [](const SceneInPython& scene, const File& file) {
+            write_bytes(file, call([&] { return report_page(*scene.machine, scene); }));
+          },
+          arg("file"), "Writes the page of simulate-dig --report.");
   module.def(
       "simulate_dig", &simulated, arg("machine"), arg("soil"), arg("density_percent"),
       arg("terrain") = py::none(), py::kw_only(), arg("path") = py::none(),

@@ -24,7 +24,12 @@ using py::arg;
 
 // ---- what a site is told ------------------------------------------------------------------------
 
-void tell_dig(const std::optional<SitePlan>& plan, const std::optional<DigParameters>& path,
+/// SitePlan of Python.
+struct SitePlanInPython : SitePlan {
+  std::shared_ptr<const PlanContext> made_with;
+};
+
+void tell_dig(const std::optional<SitePlanInPython>& plan, const std::optional<DigParameters>& path,
               const std::optional<double>& start, SiteEvent& event) {
   if (plan && path) throw Error(ErrorKind::bad_input, "plan and dug_path both tell the path");
   if (start && !path) throw Error(ErrorKind::bad_input, "dug_start needs dug_path");
@@ -38,7 +43,7 @@ void tell_dig(const std::optional<SitePlan>& plan, const std::optional<DigParame
 
 SiteEvent made_event(const py::object& scan, const py::object& before, bool dug,
                      const std::optional<double>& time, const BasePose& base,
-                     const std::optional<SitePlan>& plan,
+                     const std::optional<SitePlanInPython>& plan,
                      const std::optional<DigParameters>& dug_path,
                      const std::optional<double>& dug_start,
                      const std::optional<Measured>& payload_mass,
@@ -72,12 +77,14 @@ void bind_event(py::module_& module) {
       .def_property_readonly(
           "site_from_machine",
           [](const BasePose& base) { return array(base.site_from_machine().matrix()); },
-          "Takes points of the machine's frame into that of the site, shape (4, 4).")
-      .def("__repr__", [](const BasePose& b) {
-        return shown("BasePose", {{"x", b.x}, {"y", b.y}, {"z", b.z}, {"heading", b.heading}});
-      });
-  py::class_<SitePlan>(module, "SitePlan", "The next dig on a site.")
-      .def_readonly("plan", &SitePlan::plan, "A DigPlan in the machine's frame.")
+          "Takes points of the machine's frame into that of the site, shape (4, 4).");
+  py::class_<SitePlanInPython>(module, "SitePlan", "The next dig on a site.")
+      .def_property_readonly(
+          "plan",
+          [](const SitePlanInPython& of) {
+            return PlanInPython{{of.plan}, of.made_with};
+          },
+          "A DigPlan in the machine's frame.")
       .def_readonly("density", &SitePlan::density, "That it is for.")
       .def_readonly("ground", &SitePlan::ground, "That it is on, in the machine's frame.");
   py::class_<SiteEvent>(module, "SiteEvent", "A scan of the site, after one dig or after none.")
@@ -270,12 +277,13 @@ void bind_views(SiteClass& site) {
           "The ground about a machine, in its frame: cells that no scan saw are unknown.");
 }
 
-SitePlan planned(SiteInPython& site, const BasePose& base,
-                 const std::optional<GroundDensity>& density, const std::string& method,
-                 const std::optional<PathLibrary>& library,
-                 const std::optional<SearchOptionsInPython>& search, const py::object& simulator,
-                 double speed_fraction, const std::optional<HeightMap>& standing_on,
-                 const std::optional<Terrain>& present) {
+SitePlanInPython planned(SiteInPython& site, const BasePose& base,
+                         const std::optional<GroundDensity>& density, const std::string& method,
+                         const std::optional<PathLibrary>& library,
+                         const std::optional<SearchOptionsInPython>& search,
+                         const py::object& simulator, double speed_fraction,
+                         const std::optional<HeightMap>& standing_on,
+                         const std::optional<Terrain>& present) {
   const auto own = std::make_shared<Call>();
   SitePlanOptions options;
   options.base = base;
@@ -283,7 +291,15 @@ SitePlan planned(SiteInPython& site, const BasePose& base,
   options.plan.standing_on = standing_on;
   options.density = density;
   options.present = present;
-  return site.with(*own, [&](const Site& of) { return plan_on_site(of, options); });
+  const auto kept = shared(simulator);
+  return site.with(*own, [&](const Site& of) {
+    SitePlanInPython made{plan_on_site(of, options), {}};
+    const SiteSettings& settings = of.settings();
+    made.made_with = std::make_shared<const PlanContext>(
+        PlanContext{settings.machine, settings.soil, made.density, made.ground, kept,
+                    options.plan.search.objective});
+    return made;
+  });
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/calibration/calibration.hpp>
+#include <excavplan/results/result_json.hpp>
+#include <excavplan/soil/compaction.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -9,6 +11,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 
@@ -61,6 +64,15 @@ void bind_soil_kind(py::module_& module) {
           "loose_state", [](const SoilKind& soil) { return loose_state(soil); },
           "State of dug soil.")
       .def(
+          "compaction",
+          [](const SoilKind& soil, double d, double proctor) {
+            RelativeDensity density;
+            density.percent = d;
+            return compaction_of(soil, density, proctor).percent;
+          },
+          arg("density_percent"), arg("proctor_density"),
+          "Dry density over the largest of a Proctor test of this soil [kg/m^3], in [%].")
+      .def(
           "bulking_of_density",
           [](const SoilKind& soil, double d) { return bulking_of_density(soil, d); },
           arg("density_percent"), "Bulking factor if all soil goes to the loose state [-].")
@@ -82,9 +94,9 @@ void bind_density(py::module_& module) {
       .def_readonly("trustworthy", &RelativeDensity::trustworthy,
                     "False: outside 0 .. 100 % by more than the error explains.")
       .def_readonly("warnings", &RelativeDensity::warnings)
-      .def("__repr__", [](const RelativeDensity& d) {
-        return shown("RelativeDensity", {{"percent", d.percent}, {"sd_percent", d.sd_percent}});
-      });
+      .def(
+          "to_json", [](const RelativeDensity& density) { return to_json(density); },
+          "The density as estimate-density prints it with --json.");
   py::class_<GroundDensity>(module, "GroundDensity",
                             "The relative density of the ground, as far as it is known, for plans.")
       .def(py::init([](double percent, double sd_percent, bool trustworthy, std::string soil) {
@@ -100,10 +112,7 @@ void bind_density(py::module_& module) {
       .def_readonly("sd_percent", &GroundDensity::sd_percent, "Standard deviation [points].")
       .def_readonly("trustworthy", &GroundDensity::trustworthy,
                     "False: who estimated it does not trust it.")
-      .def_readonly("soil", &GroundDensity::soil, "Of the law that gave it; empty: unknown.")
-      .def("__repr__", [](const GroundDensity& d) {
-        return shown("GroundDensity", {{"percent", d.percent}, {"sd_percent", d.sd_percent}});
-      });
+      .def_readonly("soil", &GroundDensity::soil, "Of the law that gave it; empty: unknown.");
   py::implicitly_convertible<py::float_, GroundDensity>();
   py::implicitly_convertible<py::int_, GroundDensity>();
 }
@@ -190,7 +199,13 @@ void bind_soil(py::module_& module) {
                              "Of the cut, shape (N,) [-]; 0 where unknown.")
       .def(
           "to_json", [](const DensityCalibration& c) { return to_json(c); },
-          "The text of a law file, which load_density_law() reads.");
+          "The text of a law file, which load_density_law() reads.")
+      .def(
+          "plot",
+          [](const DensityCalibration& c, const std::optional<File>& file) {
+            return plotted(file, [&](ImageFormat format) { return law_image(c, format); });
+          },
+          arg("file") = py::none(), "A Picture; file: also written to, .svg, .png or .pdf.");
   module.def("fit_density_law", &fitted, arg("bulking_factors"), arg("densities_percent"),
              "Fits a law to measured digs of known density: bulking factors [-] and relative\n"
              "densities [%], both of shape (N,).");

@@ -5,6 +5,7 @@
 #include <excavplan/clouds/cloud.hpp>
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/paper/paper_change.hpp>
+#include <excavplan/report/report_pages.hpp>
 #include <excavplan/results/result_json.hpp>
 #include <excavplan/scans/scan_pose.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
@@ -12,6 +13,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "scans.hpp"
 #include "texts.hpp"
@@ -81,17 +83,19 @@ Scan scan_of(const py::object& source, const char* name) {
 
 namespace {
 
+Array points_in(const Cloud& cloud) {
+  return array_of_rows(cloud.points, [](const Eigen::Vector3d& point) { return point; });
+}
+
 void bind_clouds(py::module_& module) {
-  py::class_<Cloud>(module, "Cloud", "Points of a scan [m].")
+  py::class_<Cloud> bound(module, "Cloud", "Points of a scan [m].");
+  bind_numbers(bound, "The points, shape (N, 3) [m].", &points_in);
+  bound
       .def(py::init(&made_cloud), arg("points"), arg("sensor_origin") = py::none(),
            "points: shape (N, 3) [m], copied; sensor_origin: where the sensor stood, in the frame\n"
            "of the points [m].")
-      .def_property_readonly(
-          "points",
-          [](const Cloud& cloud) {
-            return array_of_rows(cloud.points, [](const Eigen::Vector3d& point) { return point; });
-          },
-          "In the order of the file, shape (N, 3) [m]; not all need be finite.")
+      .def_property_readonly("points", &points_in,
+                             "In the order of the file, shape (N, 3) [m]; not all need be finite.")
       .def_readonly("width", &Cloud::width, "Of an organised cloud, else the number of points.")
       .def_readonly("height", &Cloud::height, "1 unless organised.")
       .def_readonly("sensor_origin", &Cloud::sensor_origin, "Where the sensor stood [m], if known.")
@@ -118,7 +122,8 @@ void bind_clouds(py::module_& module) {
           "The text that inspect-cloud prints with --json, but for its options.");
   module.def(
       "read_cloud", [](const File& file) { return call([&] { return read_cloud(file.path); }); },
-      arg("file"), "Reads PCD, PLY, LAS, GeoTIFF, ESRI ASCII grids or XYZ, told by the content.");
+      arg("file"),
+      "Reads PCD, PLY, LAS, GeoTIFF, ESRI ASCII grids, OBJ or XYZ, told by the content.");
   module.def(
       "write_cloud",
       [](const File& file, const Cloud& cloud) {
@@ -251,6 +256,14 @@ void bind_parts(py::module_& module) {
       .def_readonly("disagreement", &SuccessiveDensity::disagreement, "In standard deviations.");
 }
 
+Picture plot_of(const DensityEstimate& estimate, const std::string& what,
+                const std::optional<File>& file) {
+  const bool is_change = of_word<bool>("the plot", what, {{"change", true}, {"density", false}});
+  return plotted(file, [&](ImageFormat format) {
+    return is_change ? change_image(estimate, format) : density_image(estimate, format);
+  });
+}
+
 void bind_estimate(py::module_& module) {
   using E = DensityEstimate;
   py::class_<E>(module, "DensityEstimate",
@@ -285,12 +298,16 @@ void bind_estimate(py::module_& module) {
       .def(
           "to_json", [](const E& estimate) { return to_json(estimate); },
           "The text that estimate-density prints with --json, but for its options.")
-      .def("__repr__", [](const E& estimate) {
-        const auto& density = estimate.density;
-        return density ? "<DensityEstimate " + number(density->percent) + " % +- " +
-                             number(density->sd_percent) + ">"
-                       : std::string("<DensityEstimate without a density>");
-      });
+      .def("plot", &plot_of, arg("what") = "change", arg("file") = py::none(),
+           "A Picture.\n\n"
+           "what: 'change' of the ground, or 'density' with the law; file: also written to, .svg,\n"
+           ".png or .pdf.")
+      .def(
+          "report",
+          [](const E& estimate, const File& file) {
+            write_bytes(file, call([&] { return report_page(estimate); }));
+          },
+          arg("file"), "Writes the page of estimate-density --report.");
 }
 
 /// A kind, its name or file, "unknown" or nothing.

@@ -6,8 +6,6 @@
 #include <iomanip>
 #include <sstream>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <pybind11/pybind11.h>
 
@@ -24,11 +22,6 @@ inline pybind11::str text(const std::string& message) {
   return decoded;
 }
 
-/// As Python writes it.
-inline std::string number(double value) {
-  return pybind11::str(pybind11::repr(pybind11::float_(value)));
-}
-
 /// To three digits, or whole: "3.14", "31416"
 inline std::string rounded(double value) {
   std::ostringstream text;
@@ -36,16 +29,6 @@ inline std::string rounded(double value) {
   text << std::setprecision(std::abs(value) >= 1e3 ? 0 : 3);
   text << (std::abs(value) < 1e-9 ? 0.0 : value);
   return text.str();
-}
-
-/// "Measured(value=1.2, sd=0.1)"
-inline std::string shown(const std::string& of,
-                         const std::vector<std::pair<const char*, double>>& members) {
-  std::string text = of + "(";
-  for (const auto& [name, value] : members) {
-    text += (text.back() == '(' ? "" : ", ") + std::string(name) + "=" + number(value);
-  }
-  return text + ")";
 }
 
 }  // namespace excavplan::python

@@ -3,12 +3,16 @@
 #include <excavplan/trial/job_trial.hpp>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/report/report_pages.hpp>
+#include <excavplan/results/result_json.hpp>
 #include <excavplan/trial/plain_planners.hpp>
+#include <excavplan/trial/trial_history.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "jobs.hpp"
 #include "paths.hpp"
+#include "pictures.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 
@@ -196,22 +200,34 @@ void bind_views(TruthClass& truth) {
 
 // ---- whole jobs ---------------------------------------------------------------------------------
 
-JobTrial played(const HiddenSite& site, const py::object& planner,
-                const std::optional<Machine>& machine, std::uint64_t seed, long long most_steps,
-                const py::object& progress) {
+/// JobTrial of Python.
+struct TrialInPython : JobTrial {
+  std::shared_ptr<const JobHistory> history;
+  std::shared_ptr<const Machine> machine;
+};
+
+TrialInPython played(const HiddenSite& site, const py::object& planner,
+                     const std::optional<Machine>& machine, std::uint64_t seed,
+                     long long most_steps, const py::object& progress) {
   const auto shared_progress = shared(progress);
   TrialOptions options;
   options.truth.seed = seed;
   options.most_steps = most_steps;
   Call own;
+  TrialRecorder recorder = call([&] { return TrialRecorder(site); });
   options.each = [&](const TrialStep& step) {
+    recorder.add(step);
     if (!goes_on(own, *shared_progress, step) || own.failed()) {
       throw Error(ErrorKind::bad_input, "the trial was ended by its progress callback");
     }
   };
+  const auto digger = std::make_shared<const Machine>(machine_of(machine, site));
+  const auto with_history = [&](JobTrial trial) -> TrialInPython {
+    return {std::move(trial), std::make_shared<const JobHistory>(recorder.history()), digger};
+  };
   if (py::isinstance<JobInPython>(planner)) {
     auto& job = planner.cast<JobInPython&>();
-    return own.run([&] { return run_trial(site, machine_of(machine, site), job, options); });
+    return with_history(own.run([&] { return run_trial(site, *digger, job, options); }));
   }
   if (!py::isinstance<py::str>(planner)) throw py::type_error("planner: a SiteJob or a word");
   const auto word = planner.cast<std::string>();
@@ -219,17 +235,16 @@ JobTrial played(const HiddenSite& site, const py::object& planner,
   for (const PlainPolicy& policy : plain_policies()) {
     known += (known.empty() ? "" : ", ") + policy.word;
     if (policy.word != word) continue;
-    return own.run([&] {
-      const Machine digger = machine_of(machine, site);
-      const auto plain = plain_planner(policy, site.known, site.first_scan, digger);
-      return run_trial(site, digger, *plain, options);
-    });
+    return with_history(own.run([&] {
+      const auto plain = plain_planner(policy, site.known, site.first_scan, *digger);
+      return run_trial(site, *digger, *plain, options);
+    }));
   }
   throw Error(ErrorKind::bad_input,
               "the planner: '" + word + "' is no SiteJob and none of " + known);
 }
 
-std::string shown_trial(const JobTrial& trial) {
+std::string shown_trial(const TrialInPython& trial) {
   return "<JobTrial: " + shown_score(trial.score) + ", " + std::to_string(trial.digs) + " digs, " +
          rounded(1e-3 * trial.energy_per_design()) + " kJ/m^3, " + rounded(trial.time / 60.0) +
          " min>";
@@ -240,10 +255,10 @@ void bind_trial_results(py::module_& module) {
       .def_readonly("step", &TrialStep::step, "JobStep.")
       .def_readonly("done", &TrialStep::done, "TrueStep.")
       .def_readonly("planning_time", &TrialStep::planning_time, "By the clock [s].");
-  py::class_<JobTrial>(module, "JobTrial", "What became of a job on hidden ground.")
+  py::class_<TrialInPython>(module, "JobTrial", "What became of a job on hidden ground.")
       .def_readonly("score", &JobTrial::score, "JobScore.")
       .def_property_readonly(
-          "reason", [](const JobTrial& trial) { return text(trial.reason); }, "Of its end.")
+          "reason", [](const TrialInPython& trial) { return text(trial.reason); }, "Of its end.")
       .def_readonly("stopped", &JobTrial::stopped, "By the planner.")
       .def_readonly("digs", &JobTrial::digs, "With those that finish.")
       .def_readonly("finishing", &JobTrial::finishing)
@@ -259,6 +274,19 @@ void bind_trial_results(py::module_& module) {
       .def_readonly("after", &JobTrial::after, "The true Terrain.")
       .def_property_readonly("energy_per_design", &JobTrial::energy_per_design,
                              "Over the volume of the design that was taken out [J/m^3].")
+      .def_property_readonly(
+          "history", [](const TrialInPython& trial) { return JobHistory(*trial.history); },
+          "JobHistory of the true ground.")
+      .def(
+          "to_json", [](const TrialInPython& trial) { return to_json(trial); },
+          "The text that simulate-site prints with --json.")
+      .def(
+          "report",
+          [](const TrialInPython& trial, const File& file) {
+            write_bytes(file,
+                        call([&] { return report_page(trial, *trial.history, *trial.machine); }));
+          },
+          arg("file"), "Writes the page of simulate-site --report.")
       .def("__repr__", &shown_trial);
 }
 

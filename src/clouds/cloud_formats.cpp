@@ -11,13 +11,14 @@ CloudFileFormat ply_format();
 CloudFileFormat las_format();
 CloudFileFormat geotiff_format();  // raster_file.cpp
 CloudFileFormat ascii_grid_format();
+CloudFileFormat obj_format();
 CloudFileFormat xyz_format();
 
 const std::vector<CloudFileFormat>& cloud_file_formats() {
   // xyz last: it takes every text.
-  static const std::vector<CloudFileFormat> formats = {pcd_format(),        ply_format(),
-                                                       las_format(),        geotiff_format(),
-                                                       ascii_grid_format(), xyz_format()};
+  static const std::vector<CloudFileFormat> formats = {
+      pcd_format(),        ply_format(), las_format(), geotiff_format(),
+      ascii_grid_format(), obj_format(), xyz_format()};
   return formats;
 }
 

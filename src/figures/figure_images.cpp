@@ -10,6 +10,8 @@
 #include "figures/density_figure.hpp"
 #include "figures/dig_figures.hpp"
 #include "figures/efficiency_figures.hpp"
+#include "figures/ground_figure.hpp"
+#include "figures/job_estimate_figure.hpp"
 #include "figures/law_figure.hpp"
 #include "figures/load_figures.hpp"
 #include "figures/reach_figure.hpp"
@@ -74,6 +76,15 @@ std::string dig_image(const Machine& machine, const DigPlan& plan, const PlanSit
                       boom_plane_profile(dig.after(site.ground)),
                       plan_title(plan, site)};
   return image_of(figure_of(dug, what), format);
+}
+
+std::string job_estimate_image(const JobEstimate& estimate, const std::optional<JobCost>& cost,
+                               ImageFormat format) {
+  return image_of(job_estimate_figure(estimate, cost), format);
+}
+
+std::string ground_image(const HeightMap& ground, ImageFormat format) {
+  return image_of(ground_figure(ground), format);
 }
 
 std::string reach_image(const Machine& machine, ImageFormat format) {

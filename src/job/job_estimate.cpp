@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include <excavplan/base/data_files.hpp>
+
 #include "base/check.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
@@ -20,6 +22,7 @@ constexpr double drive_sd = 0.27;     // of ln of work over fuel: the model make
                                       // work, 0.10 is published for whole excavators
 constexpr double fill = 0.95;         // of the load of a truck
 constexpr double fill_sd = 0.05;      // of ln of it
+constexpr double joint_share = 0.9;   // of an engine's rated power that a machine file states
 constexpr double unlike_sd = 0.25;    // of ln, for each thing in which a job is not as those played
 constexpr double like = 2.0;          // a length up to this factor off is as played
 constexpr double like_density = 5.0;  // so far outside of the densities played [points]
@@ -209,6 +212,18 @@ double EstimateSpread::total() const {
 std::array<double, 2> EstimatedFigure::interval() const {
   const double factor = std::exp(two_sided_95_percent * spread.total());
   return {value / factor, value * factor};
+}
+
+EstimateBasis shipped_basis(const Machine& machine) {
+  EstimateBasis basis;
+  basis.fuel = load_fuel_model(find_data_file("engines/zx120.json"));
+  basis.played = load_played_jobs(find_data_file("jobs/played.json"));
+  if (machine.name == basis.fuel.name || !machine.engine) return basis;
+  const double size = machine.engine->power / joint_share / basis.fuel.rated_power;
+  basis.fuel.rated_power *= size;
+  basis.fuel.rated_flow *= size;
+  basis.fuel.idle_flow *= size;
+  return basis;
 }
 
 JobEstimate estimate_job(const Machine& machine, const SoilKind& soil, const JobOutline& job,

@@ -49,7 +49,8 @@ void add_figure(Json& json, const std::string& key, const EstimatedFigure& figur
 
 }  // namespace
 
-Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job) {
+Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job,
+                       const std::optional<JobCost>& cost) {
   const auto times = [](double factor) {
     return [factor](double value) { return factor * value; };
   };
@@ -58,6 +59,11 @@ Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job) {
   add_figure(json, "time_min", estimate.time, times(1.0 / 60.0));
   add_figure(json, "fuel_l", estimate.fuel, times(1.0));
   add_figure(json, "truckloads", estimate.truckloads, whole);
+  if (cost) {
+    add_figure(json, "cost", cost->total, times(1.0));
+    json["cost_parts"] = {
+        {"fuel", cost->fuel}, {"machine", cost->machine}, {"truckloads", cost->truckloads}};
+  }
   add_figure(json, "energy_kj", estimate.energy, times(1e-3));
   add_figure(json, "swollen_m3", estimate.swollen, times(1.0));
   add_figure(json, "mass_kg", estimate.mass, times(1.0));

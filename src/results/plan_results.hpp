@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/job/job_cost.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 
@@ -27,7 +28,8 @@ Json job_step_json(const JobStep& step);
 Json progress_json(const JobProgress& progress);
 
 /// What a job is going to take, as plan-site estimate prints it; digs and loads are whole ones.
-Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job);
+Json job_estimate_json(const JobEstimate& estimate, const JobOutline& job,
+                       const std::optional<JobCost>& cost = {});
 
 /// Key `search` of a result: all that a search was set to.
 Json search_settings_json(const Machine& machine, const DigSearchOptions& options);

@@ -9,6 +9,8 @@
 #include "results/scan_results.hpp"
 #include "results/scene_results.hpp"
 #include "results/survey_results.hpp"
+#include "results/volume_results.hpp"
+#include "trial/trial_json.hpp"
 
 namespace excavplan {
 
@@ -40,6 +42,17 @@ std::string to_json(const std::string& file, const RecordingContents& contents) 
 std::string to_json(const JobStep& step) { return json_text(job_step_json(step)); }
 
 std::string to_json(const JobProgress& progress) { return json_text(progress_json(progress)); }
+
+std::string to_json(const JobTrial& trial) { return json_text(trial_json(trial)); }
+
+std::string to_json(const JobEstimate& estimate, const JobOutline& job,
+                    const std::optional<JobCost>& cost) {
+  return json_text(job_estimate_json(estimate, job, cost));
+}
+
+std::string to_json(const VolumeChange& change) { return json_text(volumes_json(change)); }
+
+std::string to_json(const RelativeDensity& density) { return json_text(density_json(density)); }
 
 std::string to_json(const SurveyPlan& plan, const SurveyForecast& forecast,
                     const SurveyNeeds& needs, double target_sd_percent) {

@@ -697,13 +697,13 @@ TEST(BadText, IsNotACloud) {
       {string("1\0 2\0 3\0", 8), "byte 1: found the byte 0, expected a cloud as PCD, PLY, LAS"},
       {"ASTM-E57\x01",
        "byte 0: found an E57 file, expected a cloud as PCD, PLY, LAS, GeoTIFF, ESRI ASCII "
-       "grid or XYZ text; convert it by "
+       "grid, OBJ or XYZ text; convert it by "
        "pdal "
        "translate in.e57 out.las, or CloudCompare -SILENT -O in.e57"},
       {"SQLite format 3",
        "found a recording (ROS 2 bag) or another database, expected a cloud as PCD, PLY, LAS, "
        "GeoTIFF, "
-       "ESRI ASCII grid or XYZ text; inspect-cloud FILE lists its topics, and writes one, "
+       "ESRI ASCII grid, OBJ or XYZ text; inspect-cloud FILE lists its topics, and writes one, "
        "FILE:TOPIC@TIME, as a "
        "cloud"},
       {"\x89MCAP0\r\n", "found a recording (MCAP)"},
@@ -722,6 +722,25 @@ TEST(BadText, IsNotACloud) {
       {"PK\x03\x04", "found a ZIP archive"},
       {"1 2 3\n" + string(9000, '1'), "line 2: found a line of more than 4096 bytes"},
       {"PLY\nformat ascii 1.0\n", "line 1: found 'PLY'"},
+  });
+}
+
+TEST(ReadCloud, VerticesOfTheMeshesOfScanningApps) {
+  for (const string& content :
+       {string("# a phone\nmtllib scan.mtl\no Scan\nv 1 2 3\nv -4 5.5 6e1\nvt 0 1\nvn 0 1 0\n"
+               "usemtl m\ns off\nf 1/1/1 2/1/1 1/1/1\n"),
+        string("v 1 2 3 0.5 0.4 0.3\r\n\r\n#\r\nv -4 5.5 6e1 0.5 0.4 0.3\r\nf 1 2 1\r\n"),
+        string("\n  v 1 2 3 1.0\ng hole\n#comment\nf 1 1 1\nv -4 5.5 60 1.0")}) {
+    expect_points(read_content(content), two_points);
+  }
+}
+
+TEST(BadObj, IsRefused) {
+  expect_refused({
+      {"o Scan\nf 1 2 3\n", "line 3: found no vertex, expected v x y z"},
+      {"v 1 2\n", "line 1: found the end of the line, expected v x y z"},
+      {"v 1 2 3\nv 1 2 x\n", "line 2: found 'x', expected a number"},
+      {"v 1 2 3\nw 4 5 6\n", "line 2: found 'w', expected v, vn, vt, f or another word of OBJ"},
   });
 }
 
@@ -1013,9 +1032,15 @@ void mutate(string& content, Random& random) {
 
 TEST(Mutations, AreReadOrRefusedButNeverCrash) {
   Random random(1);
-  const std::vector<string> seeds = {
-      pcd_ascii,         pcd_binary,       pcd_compressed,        ply_ascii,
-      ply_binary(false), ply_binary(true), ply_with_lists(false), "x,y,z\n1,2,3\n-4,5.5,6e1\n"};
+  const std::vector<string> seeds = {pcd_ascii,
+                                     pcd_binary,
+                                     pcd_compressed,
+                                     ply_ascii,
+                                     ply_binary(false),
+                                     ply_binary(true),
+                                     ply_with_lists(false),
+                                     "x,y,z\n1,2,3\n-4,5.5,6e1\n",
+                                     "o a\nv 1 2 3\nv -4 5.5 6e1\nf 1 2 1\n"};
   for (const string& seed : seeds) {
     int refused = 0;
     for (int i = 0; i < 3000; ++i) {

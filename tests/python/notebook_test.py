@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
-"""The notebook runs from top to bottom, without Jupyter, and holds no outputs; so do all examples of
+"""The notebooks run from top to bottom, without Jupyter, and hold no outputs; so do all examples of
 docs/python.md, whose tables name what there is."""
 
+import ast
 import contextlib
 import io
 import json
@@ -17,22 +18,49 @@ import excavplan
 from plain_site import write_plain_site
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-NOTEBOOK = ROOT / "python" / "examples" / "first_dig.ipynb"
+NOTEBOOKS = ROOT / "python" / "examples"
 GUIDE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 
 
 class Notebook(unittest.TestCase):
-    def test_it_runs(self):
-        cells = [cell for cell in json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
-                 if cell["cell_type"] == "code"]
-        names = {}
-        shown = io.StringIO()
-        with contextlib.redirect_stdout(shown):
-            for cell in cells:
+    def run_notebook(self, name):
+        """Its names, and what it prints. What a cell ends with shows itself."""
+        notebook = json.loads((NOTEBOOKS / name).read_text(encoding="utf-8"))
+        names, printed = {}, io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            for cell in notebook["cells"]:
+                if cell["cell_type"] != "code":
+                    continue
                 self.assertEqual(cell["outputs"], [])
-                exec("".join(cell["source"]), names)  # noqa: S102: our own
-        self.assertIn("density 41.6 +- 3.2 %", shown.getvalue())
+                lines = ast.parse("".join(cell["source"]))
+                last = lines.body.pop() if isinstance(lines.body[-1], ast.Expr) else None
+                exec(compile(lines, name, "exec"), names)  # noqa: S102: our own
+                if last is not None:
+                    shown = eval(compile(ast.Expression(last.value), name, "eval"), names)
+                    self.assert_shows_itself(shown)
+        self.assertNotIn(" at 0x", printed.getvalue())
+        return names, printed.getvalue()
+
+    def assert_shows_itself(self, thing):
+        if thing is None:  # print()
+            return
+        shows = getattr(thing, "_repr_html_", None) or thing._repr_svg_
+        self.assertGreater(len(shows()), 200)
+
+    def test_the_first_dig(self):
+        names, printed = self.run_notebook("first_dig.ipynb")
+        self.assertIn("density 41.6 +- 3.2 %", printed)
         self.assertGreater(names["plan"].dig.payload_mass, 400.0)
+
+    def test_the_trench(self):
+        names, printed = self.run_notebook("trench.ipynb")
+        self.assertIn("<JobStep 1: ", printed)
+        self.assertGreater(names["progress"].digs, 1)
+        self.assertLess(names["deepest"], -0.1)
+
+    def test_no_notebook_is_left_out(self):
+        self.assertEqual(sorted(file.name for file in NOTEBOOKS.glob("*.ipynb")),
+                         ["first_dig.ipynb", "trench.ipynb"])
 
     def test_the_examples_of_the_guide_run(self):
         examples = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)

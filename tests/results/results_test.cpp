@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/figures/figure_images.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/maps/ground_maps.hpp>
+#include <excavplan/report/report_pages.hpp>
 #include <excavplan/results/force_history.hpp>
 #include <excavplan/results/stated_density.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
@@ -93,6 +95,24 @@ TEST(Figures, AreEqualForEqualResults) {
     EXPECT_NE(svg.find("<svg"), std::string::npos);
     EXPECT_EQ(svg, dig_image(zx120(), scene(), what));
   }
+}
+
+TEST(Figures, OfGroundHaveAtMostSoManyCells) {
+  HeightMap plain = flat_ground({0.0, 0.0, 40.0, 2.0}, 0.05);  // 800 cells long
+  plain.z.leftCols(80).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const std::string svg = ground_image(plain);
+  EXPECT_NE(svg.find("<svg"), std::string::npos);
+  EXPECT_NE(svg.find("not seen"), std::string::npos);
+  EXPECT_LT(svg.size(), ground_image(flat_ground({0.0, 0.0, 10.0, 10.0}, 0.05)).size() + 200000);
+}
+
+TEST(Pages, OfTheLibraryHoldTheResultAndNoOptions) {
+  const std::string page = report_page(zx120(), scene());
+  EXPECT_EQ(page, report_page(zx120(), scene()));
+  EXPECT_EQ(page.rfind("<!doctype html>", 0), 0U);
+  EXPECT_NE(page.find("payload_mass_kg"), std::string::npos);
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_EQ(page.find("<section id=\"settings\">"), std::string::npos);
 }
 
 TEST(Figures, HaveTheFormatAskedFor) {

@@ -71,6 +71,20 @@ TEST_F(Tools, QuickstartScansGiveTheDensity) {
   EXPECT_EQ(loam["density_percent"], estimate["density_percent"]);
 }
 
+TEST_F(BadInput, TheDensityIsCompactionToo) {
+  const Words scans = quickstart(folder);
+  const json found =
+      answer("estimate-density", scans + Words{"--soil", "loam", "--proctor", "1.84t/m3"});
+  const double e = 1.3 - 0.01 * number(found, "/density_percent") * (1.3 - 0.415);
+  EXPECT_NEAR(number(found, "/compaction_percent"), 100.0 * 2680.0 / (1.0 + e) / 1840.0, 0.3);
+  EXPECT_LT(number(found["compaction_interval_percent"], "/0"),
+            number(found, "/compaction_percent"));
+  EXPECT_FALSE(answer("estimate-density", scans).contains("compaction_percent"));
+  refused(2, "--proctor needs --soil", "estimate-density", scans + Words{"--proctor", "1840"});
+  refused(2, "Proctor density [kg/m3] is 18.4", "estimate-density",
+          scans + Words{"--soil", "loam", "--proctor", "18.4"});
+}
+
 TEST_F(Tools, TheSoilIsAssumedToldOrUnknown) {
   const json assumed = answer("estimate-density", quickstart(folder));
   EXPECT_EQ(assumed["soil"], "loam");

@@ -181,11 +181,36 @@ TEST_F(PlanSite, AnEstimateOfWordsOfASiteAndOfAJob) {
   EXPECT_TRUE(contains(strict.out, "NOT TRUSTWORTHY: its mean depth is 3.00 m")) << strict.out;
 }
 
+TEST_F(PlanSite, AnEstimateWithPricesHasACostAndAPageToPrint) {
+  const std::string page = folder.file("trench.html");
+  const Words words = {"estimate", "--trench", "10x0.7x1.2m", "--soil", "clay"};
+  EXPECT_FALSE(answer("plan-site", words).contains("cost"));
+  const json priced =
+      answer("plan-site", words + Words{"--fuel-price", "2", "--hour-price", "60",
+                                        "--truckload-price", "100", "--report", page});
+  const json& parts = priced["cost_parts"];
+  EXPECT_NEAR(number(parts, "/fuel"), 2.0 * number(priced, "/fuel_l"), 1e-9);
+  EXPECT_NEAR(number(parts, "/machine"), number(priced, "/time_min"), 1e-9);
+  EXPECT_NEAR(number(parts, "/truckloads"), 100.0 * number(priced, "/truckloads"), 1e-9);
+  EXPECT_NEAR(number(priced, "/cost"),
+              number(parts, "/fuel") + number(parts, "/machine") + number(parts, "/truckloads"),
+              1e-9);
+  EXPECT_LT(number(priced["cost_interval"], "/0"), number(priced, "/cost"));
+  EXPECT_GT(number(priced["cost_interval"], "/1"), number(priced, "/cost"));
+  const std::string text = content_of(page);
+  EXPECT_TRUE(contains(text, "<h1>Trench 10x0.7x1.2m in clay, zx120: estimate</h1>"));
+  EXPECT_TRUE(contains(text, "Not trustworthy: its mean depth is 1.20 m"));
+  EXPECT_TRUE(contains(text, "<dt>Cost</dt>"));
+  EXPECT_TRUE(contains(text, "95 % interval"));
+  EXPECT_LT(text.size(), 100000U) << "a page without ground needs no program to draw it";
+}
+
 TEST_F(PlanSite, AnEstimateNamesWhatIsWrong) {
   const auto refuse = [&](const Words& words, const std::string& reason, int code = 2) {
     refused(code, reason, "plan-site", Words{"estimate"} + words);
   };
   refuse({}, "the design is missing: give FOLDER, --site, --trench or --design");
+  refuse({"--trench", "10x1x1", "--fuel-price", "-1"}, "--fuel-price: -1 must be at least 0");
   refuse({"--trench", "10x0.7"}, "--trench: design: the size of a trench is '10x0.7', must be");
   refuse({"--trench", "10x1x500"}, "--trench: design: depth [m] is 500");
   refuse({"--trench", "10x1x1", "--soil", "mud"}, "--soil: 'mud' is neither a file nor one of");

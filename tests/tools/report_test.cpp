@@ -74,6 +74,29 @@ TEST(ReportPage, LoadsNothing) {
   }
 }
 
+TEST(ReportPage, OneWithoutGroundIsShortAndSaysOnlyWhatWasGiven) {
+  Report report;
+  report.title = "Estimate";
+  report.plot = "<svg></svg>";
+  report.plot_always = true;
+  ReportedRun run = plain_run();
+  run.json = R"({"digs": 9, "digs_interval": [7, 12], "spread_percent": {"digs": {"density": 8.25,
+    "played_jobs": 10}, "time_min": {"density": 4, "played_jobs": 11}}})";
+  report.headline = {"digs"};
+  const std::string page = html_page(report, run);
+  EXPECT_LT(page.size(), 60000U);
+  EXPECT_TRUE(contains(page, "95 % interval 7 .. 12"));
+  EXPECT_TRUE(contains(page, "<code>--density</code>"));
+  EXPECT_FALSE(contains(page, "<code>--soil</code>"));
+  EXPECT_TRUE(contains(page, "<h3>Spread [%]</h3>"));
+  EXPECT_TRUE(contains(page, "data-key=\"spread_percent.time_min.played_jobs\""));
+  run.settings.clear();
+  run.lines.clear();
+  const std::string bare = html_page(report, run);
+  EXPECT_FALSE(contains(bare, "id=\"settings\""));
+  EXPECT_FALSE(contains(bare, "id=\"printed\""));
+}
+
 TEST(ReportPage, RunsNoScriptOfItsTexts) {
   const std::string evil =
       "</script><script>alert(1)</script><img src=x onerror=alert(1)>\"'&{{title}}\x1b\xff";

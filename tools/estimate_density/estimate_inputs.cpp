@@ -11,7 +11,7 @@ namespace excavplan::tools {
 
 void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
   arguments.positional("BEFORE", inputs.before,
-                       "cloud before the dig: PCD, PLY, LAS, GeoTIFF, ASCII grid or XYZ, or " +
+                       "cloud before the dig: PCD, PLY, LAS, GeoTIFF, ASCII grid, OBJ or XYZ, or " +
                            std::string(recording_form) +
                            "; one cloud alone is that after it, on a --site");
   arguments.positional("AFTER", inputs.after, "cloud after the dig");
@@ -56,6 +56,9 @@ Outcome shown_estimate(const EstimateInputs& inputs, const KnownDig& dig,
                        const DensityEstimate& counts, const TakenUnits& units) {
   Outcome outcome = estimate_outcome(counts, dig.options.soil);
   add_machine_warnings(counts, dig.law, dig.machine, units, outcome);
+  if (inputs.soil.proctor) {
+    add_compaction(counts, *dig.options.soil.kind, *inputs.soil.proctor, outcome);
+  }
   inputs.second.check(counts, outcome);
   draw_estimate(inputs.plots, inputs.report, counts, outcome);
   write_maps(

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <excavplan/scans/depth_intrinsics.hpp>
+#include <excavplan/soil/compaction.hpp>
 
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
@@ -78,6 +79,19 @@ void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law
   if (!many) return;
   outcome.warnings.push_back(*many);
   outcome.trustworthy = outcome.trustworthy && !many->ends_trust;
+}
+
+void add_compaction(const DensityEstimate& estimate, const SoilKind& soil, double proctor,
+                    Outcome& outcome) {
+  outcome.json["compaction_percent"] = nullptr;
+  if (!estimate.density) return;
+  const Compaction found = compaction_of(soil, *estimate.density, proctor);
+  outcome.json["compaction_percent"] = found.percent;
+  outcome.json["compaction_sd_percent"] = found.sd_percent;
+  outcome.json["compaction_interval_percent"] = found.interval_percent;
+  outcome.lines.push_back("compaction " + readable(found.percent, found.sd_percent) +
+                          " % of Proctor, 95 % interval " + decimals(found.interval_percent[0], 1) +
+                          " .. " + decimals(found.interval_percent[1], 1) + " %");
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

@@ -35,6 +35,10 @@ struct TakenUnits {
 void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
                           const Machine& machine, const TakenUnits& units, Outcome& outcome);
 
+/// Adds the density as compaction, if there is one. @param proctor  largest dry density [kg/m^3]
+void add_compaction(const DensityEstimate& estimate, const SoilKind& soil, double proctor,
+                    Outcome& outcome);
+
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);
 

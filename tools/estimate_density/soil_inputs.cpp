@@ -29,6 +29,9 @@ void declare_soil(Arguments& arguments, SoilInputs& inputs) {
   arguments.text("soil", "loam|sand|clay|gravel|unknown|FILE", inputs.soil,
                  "soil that was dug: a shipped one, a soil file, or unknown: any of the shipped "
                  "four (default: loam is assumed, with a warning)");
+  arguments.option("proctor", inputs.proctor, Quantity::density,
+                   "largest dry density of a Proctor test of this soil: the density as compaction "
+                   "too, by the void ratios of --soil");
 }
 
 void declare_law(Arguments& arguments, SoilInputs& inputs) {
@@ -48,6 +51,9 @@ DensityLaw law_of(const SoilInputs& inputs, const std::string& machine, DensityO
   const bool own_law = inputs.law != "default";
   if (soil.unknown && own_law) {
     usage_error("--soil unknown takes the laws of all shipped soils, not --law");
+  }
+  if (inputs.proctor && (!inputs.soil || soil.unknown)) {
+    usage_error("--proctor needs --soil, whose void ratios it compares with");
   }
   if (inputs.soil && !soil.unknown) soil.kind = soil_named(*inputs.soil);
   if (!own_law) {

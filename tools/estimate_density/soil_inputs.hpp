@@ -18,6 +18,7 @@ namespace excavplan::tools {
 struct SoilInputs {
   std::optional<std::string> soil;  ///< name, file or "unknown"
   std::string law = "default";
+  std::optional<double> proctor = {};  ///< largest dry density [kg/m^3]
 };
 
 void declare_soil(Arguments& arguments, SoilInputs& inputs);

@@ -4,39 +4,22 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
-#include <excavplan/base/warning.hpp>
+#include "report/reported_run.hpp"
 
-/// @file
-/// The run of a tool as a page about it sees it.
+namespace excavplan {
+struct Report;
+}
 
 namespace excavplan::tools {
-
-/// An option or an input with the value that counted.
-struct Setting {
-  std::string name;
-  std::string value;
-  bool given = false;  ///< else it is the default
-};
-
-/// The run that a page is about.
-struct ReportedRun {
-  std::string tool;
-  std::string version;
-  std::string json;  ///< as --json prints it
-  std::vector<std::string> lines;
-  std::vector<Warning> warnings;
-  bool judged = false;  ///< the tool can find its result not trustworthy
-  bool trustworthy = true;
-  bool stopped_early = false;
-  std::vector<Setting> settings;
-};
 
 /// What --report writes of a run.
 struct Page {
   std::string file;  ///< to write
   std::function<std::string(const ReportedRun& run)> text;
 };
+
+/// The page of a report, for Outcome::page.
+Page page_of(Report report, const std::string& file);
 
 }  // namespace excavplan::tools

@@ -31,7 +31,7 @@ struct Inputs {
 
 const About about = {
     "inspect-cloud",
-    "Summarises a scan (PCD, PLY, LAS, GeoTIFF, ASCII grid or XYZ text, detected from the "
+    "Summarises a scan (PCD, PLY, LAS, GeoTIFF, ASCII grid, OBJ or XYZ text, detected from the "
     "content), and converts it to "
     "another format or frame. Lists what a recording holds (rosbag2, MCAP, ROS 1 bag).",
     {{"inspect-cloud scan.pcd", "points, extent, point density and a guess of the frame"},

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "figures/dig_figures.hpp"
 #include "inputs/dig_plots.hpp"
 #include "report/dig_report.hpp"
 
@@ -42,9 +41,7 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
   if (plots.files.empty() && !report) return;
   const PlanSite& site = drawn.site;
   const DigPlan& plan = drawn.plan;
-  const std::string title = plan_title(plan, site);
   std::optional<DigResult> dig;
-  std::string section;
   if (plan.dig) {
     dig = rehearse(drawn.machine, plan, site);
     const DugDig dug = {drawn.machine,
@@ -52,18 +49,13 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
                         *dig,
                         boom_plane_profile(site.ground),
                         boom_plane_profile(dig->after(site.ground)),
-                        title};
+                        plan_title(plan, site)};
     drawn.dug = &dug;
     write_plots(plots, plan_figures({}, {}), drawn, outcome.lines, outcome.warnings);
-    section = to_svg(lay_out(section_figure(dug)));
   } else if (!plan.stopped) {
     warn_of_old(plots, outcome);
   }
-  if (!report) return;
-  Report page = plan_report(drawn.machine, plan, site, dig);
-  page.title = title;
-  page.plot = section;
-  outcome.page = page_of(std::move(page), *report);
+  if (report) outcome.page = page_of(plan_report(drawn.machine, plan, site, dig), *report);
 }
 
 std::vector<MapName> plan_map_names() {

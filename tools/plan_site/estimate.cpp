@@ -11,13 +11,13 @@
 
 #include "base/text.hpp"
 #include "plan_site/job_lines.hpp"
+#include "report/job_report.hpp"
 #include "results/plan_results.hpp"
 
 namespace excavplan::tools {
 namespace {
 
-constexpr double told_sd = 10.0;     // of a density that is told [points]; ours
-constexpr double joint_share = 0.9;  // of an engine's rated power that a machine file states; ours
+constexpr double told_sd = 10.0;  // of a density that is told [points]; ours
 const char* const usual_fuel = "zx120";
 
 /// What is left of the job of a folder.
@@ -46,15 +46,11 @@ GroundDensity density_of(const JobInputs& inputs, const PlannedCut& cut) {
   return density;
 }
 
-/// The fuel model that is told; the usual one is scaled to the engine of another machine.
-FuelModel fuel_of(const std::string& word, const Machine& machine) {
-  FuelModel fuel = load_fuel_model(shipped_or_file("engines", word));
-  if (word != usual_fuel || machine.name == usual_fuel || !machine.engine) return fuel;
-  const double size = machine.engine->power / joint_share / fuel.rated_power;
-  fuel.rated_power *= size;
-  fuel.rated_flow *= size;
-  fuel.idle_flow *= size;
-  return fuel;
+/// "Trench 10x0.7x1.2m"
+std::string design_words(const JobInputs& inputs) {
+  if (inputs.order.trench) return "Trench " + *inputs.order.trench;
+  const auto& file = inputs.order.design ? inputs.order.design : inputs.order.site;
+  return file ? "Design " + *file : "Job " + inputs.folder;
 }
 
 }  // namespace
@@ -67,17 +63,25 @@ Outcome work_estimate(const JobInputs& inputs, Console& console) {
   job.density = density_of(inputs, cut);
   if (cut.truck) job.truck_mass = cut.truck->target_mass;
   if (inputs.estimate.truck_mass) job.truck_mass = *inputs.estimate.truck_mass;
-  EstimateBasis basis;
-  basis.fuel = fuel_of(inputs.estimate.fuel, cut.site.machine);
-  basis.played = load_played_jobs(find_data_file("jobs/played.json"));
+  EstimateBasis basis = shipped_basis(cut.site.machine);
+  if (inputs.estimate.fuel != usual_fuel) {
+    basis.fuel = load_fuel_model(shipped_or_file("engines", inputs.estimate.fuel));
+  }
   const JobEstimate estimate = estimate_job(cut.site.machine, cut.site.soil, job, basis);
   Outcome outcome;
-  outcome.json = job_estimate_json(estimate, job);
+  const std::optional<JobCost> cost = cost_of(estimate, inputs.estimate.prices);
+  outcome.json = job_estimate_json(estimate, job, cost);
   outcome.json["soil"] = cut.site.soil.name;
   outcome.json["machine"] = cut.site.machine.name;
   outcome.json["fuel_model"] = basis.fuel.name;
-  outcome.lines = estimate_lines(estimate, job);
+  outcome.lines = estimate_lines(estimate, job, cost);
   outcome.trustworthy = estimate.trustworthy();
+  if (inputs.report) {
+    outcome.page =
+        page_of(estimate_report(estimate, cost,
+                                {design_words(inputs), cut.site.soil.name, cut.site.machine.name}),
+                *inputs.report);
+  }
   return outcome;
 }
 

@@ -29,6 +29,20 @@ void declare_words(Arguments& arguments, JobInputs& inputs, const std::string& w
   arguments.add(folder);
 }
 
+/// With a price there is a cost.
+void add_price(Arguments& arguments, const std::string& name, std::optional<double>& price,
+               const std::string& help) {
+  Arguments::Entry entry;
+  entry.name = name;
+  entry.placeholder = "NUMBER";
+  entry.help = help;
+  entry.assign = [&price, name](const std::string& text) {
+    price = parse_quantity("--" + name, text, Quantity::ratio);
+    if (!(*price >= 0.0)) usage_error("--" + name + ": " + text + " must be at least 0");
+  };
+  arguments.add(entry);
+}
+
 void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
   arguments.option("density-sd", inputs.density_sd, Quantity::percent,
                    "standard deviation of --density (default: 10; 25 where no density is told, or "
@@ -38,6 +52,12 @@ void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
                    "15000)");
   arguments.text("fuel-model", "NAME|FILE", inputs.fuel,
                  "engine: zx120, scaled to the power of another machine, or a fuel model file");
+  add_price(arguments, "fuel-price", inputs.prices.fuel,
+            "of a litre of fuel, in the currency of the others");
+  add_price(arguments, "hour-price", inputs.prices.hour,
+            "of an hour of the machine with its operator, without fuel");
+  add_price(arguments, "truckload-price", inputs.prices.truckload,
+            "of a truckload hauled and tipped");
 }
 
 }  // namespace
@@ -69,7 +89,7 @@ void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) 
                    "it works (default: before the trench); of done after a move, if not where it "
                    "was sent [m,m,rad]");
   });
-  arguments.only_if({is({"show"}), "it is of plan-site show"},
+  arguments.only_if({is({"show", "estimate"}), "it is of plan-site show and estimate"},
                     [&] { arguments.report(inputs.report); });
   arguments.only_if({is({"done"}), "it is of plan-site done"}, [&] {
     arguments.option("step", inputs.step, "the step that was done, as next names it");

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <excavplan/job/job_cost.hpp>
+
 #include "frame/arguments.hpp"
 #include "plan_site/order_inputs.hpp"
 
@@ -15,6 +17,7 @@ struct EstimateInputs {
   std::optional<double> density_sd;  ///< [points]
   std::optional<double> truck_mass;  ///< of a load [kg]
   std::string fuel = "zx120";        ///< name or file of a fuel model
+  JobPrices prices;
 };
 
 struct JobInputs {

@@ -24,10 +24,10 @@ std::string dump_text(const JobStep& step) {
 }
 
 /// "26 (18 .. 38), sd: played jobs 15 %, density 8 %"
-std::string figure_text(const EstimatedFigure& figure, const std::string& unit, double scale) {
+std::string figure_text(const EstimatedFigure& figure, const std::string& unit, double scale,
+                        bool is_whole = false) {
   const auto shown = [&](double value) {
-    return unit.empty() ? std::to_string(std::llround(std::ceil(value)))
-                        : readable(scale * value, 3);
+    return is_whole ? std::to_string(std::llround(std::ceil(value))) : readable(scale * value, 3);
   };
   const auto interval = figure.interval();
   const EstimateSpread& spread = figure.spread;
@@ -44,24 +44,40 @@ std::string figure_text(const EstimatedFigure& figure, const std::string& unit, 
          " .. " + shown(interval[1]) + from;
 }
 
+/// "; fuel 3.9, machine 43, truckloads 80"
+std::string cost_parts(const JobCost& cost) {
+  std::string parts;
+  for (const auto& [name, part] :
+       {std::pair("fuel", cost.fuel), {"machine", cost.machine}, {"truckloads", cost.truckloads}}) {
+    if (part > 0.0)
+      parts += (parts.empty() ? "; " : ", ") + std::string(name) + " " + readable(part, 3);
+  }
+  return parts;
+}
+
 }  // namespace
 
-std::vector<std::string> estimate_lines(const JobEstimate& estimate, const JobOutline& job) {
+std::vector<std::string> estimate_lines(const JobEstimate& estimate, const JobOutline& job,
+                                        const std::optional<JobCost>& cost) {
   const double volume = job.shape.volume.value;
   std::vector<std::string> lines = {
       "design       " + readable(volume, 3) + " m3 of bank, density " +
           readable(job.density.percent, 3) + " +- " + readable(job.density.sd_percent, 2) + " %",
       "loose        " + figure_text(estimate.swollen, "m3", 1.0),
       "mass         " + figure_text(estimate.mass, "t", 1e-3),
-      "digs         " + figure_text(estimate.digs, "", 1.0),
+      "digs         " + figure_text(estimate.digs, "", 1.0, true),
       "time         " + figure_text(estimate.time, "min", 1.0 / 60.0),
       "fuel         " + figure_text(estimate.fuel, "L", 1.0),
-      "truckloads   " + figure_text(estimate.truckloads, "", 1.0) + ", of " +
+      "truckloads   " + figure_text(estimate.truckloads, "", 1.0, true) + ", of " +
           readable(1e-3 * job.truck_mass, 3) + " t",
       "reference    R " + readable(1e-3 * estimate.reference_energy, 3) + " kJ per m3, " +
           readable(estimate.reference_digs, 3) + " digs of " +
           readable(estimate.dig.payload_mass, 3) + " kg, " +
           readable(estimate.reference_time / 60.0, 3) + " min"};
+  if (cost) {
+    lines.insert(lines.end() - 1,
+                 "cost         " + figure_text(cost->total, "", 1.0) + cost_parts(*cost));
+  }
   for (const std::string& each : estimate.unlike) lines.push_back("NOT TRUSTWORTHY: " + each);
   return lines;
 }

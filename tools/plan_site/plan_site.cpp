@@ -12,7 +12,8 @@ const About about = {
     "(begins a job in FOLDER), next (the step to do now, the same until it is done), done (what "
     "became of it), scan (takes in a scan that no step asked for), show (how far the job is, with "
     "--report a page of it), undo (takes the last done or scan back) or estimate (digs, time, fuel "
-    "and truckloads before the first bucket, of the job in FOLDER, a plain site, or a trench in "
+    "truckloads and cost before the first bucket, of the job in FOLDER, a plain site, or a trench "
+    "in "
     "words). FOLDER holds all that the job knows.",
     {{"plan-site new job --trench 15x1x0.5 --from 3,0 --heading 0 --scan scan.tif --soil loam "
       "--windrow 2,1.5,18,1.5,18,5,2,5",
@@ -22,7 +23,10 @@ const About about = {
       "it was done, and this is the ground now"},
      {"plan-site show job --report job.html", "a page of all that was done"},
      {"plan-site estimate --trench 15x1x0.5m --soil clay --density 50",
-      "what a trench is going to take, in level ground"}},
+      "what a trench is going to take, in level ground"},
+     {"plan-site estimate --trench 15x1x0.5m --soil loam --fuel-price 1.6 --hour-price 90 "
+      "--truckload-price 75 --report trench.html",
+      "its cost too, on a page to print"}},
     true,
     false,
     "10 next: the job is finished; 11 next: it is stuck, or nothing is safe"};

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate_dig/scene_files.hpp"
 
-#include <utility>
-
 #include <excavplan/results/force_history.hpp>
 
 #include "base/files.hpp"
-#include "figures/dig_figures.hpp"
+#include "figures/dug_dig.hpp"
 #include "frame/tool.hpp"
 #include "inputs/dig_plots.hpp"
 #include "report/dig_report.hpp"
@@ -30,10 +28,7 @@ void write_files(const SceneFiles& files, const Machine& machine, const DigScene
   write_maps(
       files.maps, [&] { return scene_maps(scene); }, outcome);
   if (!files.report) return;
-  Report report = scene_report(machine, scene);
-  report.title = title;
-  report.plot = to_svg(lay_out(section_figure(dug)));
-  outcome.page = page_of(std::move(report), *files.report);
+  outcome.page = page_of(scene_report(machine, scene), *files.report);
 }
 
 }  // namespace excavplan::tools

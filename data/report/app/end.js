@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What every page does at its end: other colours, paper, the JSON.
+// What every page does at its end: other colours and paper.
 
 document.body.classList.toggle("drawn", view !== null);
 element("view").hidden = view === null;
@@ -33,16 +33,6 @@ addEventListener("afterprint", () => {
   printing = false;
   for (const id of ["stage", "marks"]) element(id).removeAttribute("style");
   if (page) page.redraw();
-});
-
-element("copy").addEventListener("click", () => {
-  const range = document.createRange();
-  range.selectNodeContents(element("result"));
-  getSelection().removeAllRanges();
-  getSelection().addRange(range);
-  element("copy").textContent = document.execCommand("copy")
-    ? "Copied"
-    : "Selected: copy with Ctrl+C";
 });
 
 requestAnimationFrame(() =>

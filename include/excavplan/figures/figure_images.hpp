@@ -8,6 +8,8 @@
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/experiments/study.hpp>
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/job/job_cost.hpp>
 #include <excavplan/planning/rehearsal.hpp>
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/soil/density_fit.hpp>
@@ -54,6 +56,13 @@ std::string dig_image(const Machine& machine, const DigScene& scene,
 /// @throws Error as rehearse()
 std::string dig_image(const Machine& machine, const DigPlan& plan, const PlanSite& site,
                       DigImage what = DigImage::section, ImageFormat format = ImageFormat::svg);
+
+/// What a job is going to take, with 95 % intervals.
+std::string job_estimate_image(const JobEstimate& estimate, const std::optional<JobCost>& cost = {},
+                               ImageFormat format = ImageFormat::svg);
+
+/// Heights of the ground, seen from above.
+std::string ground_image(const HeightMap& ground, ImageFormat format = ImageFormat::svg);
 
 /// A machine, how far its tip comes and how hard it digs there.
 std::string reach_image(const Machine& machine, ImageFormat format = ImageFormat::svg);

@@ -85,6 +85,10 @@ struct EstimateBasis {
   FullDigOptions full_dig = {};  ///< of the best full dig, by which energy and time are foretold
 };
 
+/// What is shipped: the fuel model of the zx120, scaled to the engine of another machine, and the
+/// played jobs. @throws Error (bad_file)
+EstimateBasis shipped_basis(const Machine& machine);
+
 /// Swollen volume over the payload of the best full dig, times what played jobs took over that.
 /// @throws Error (bad_input) as best_full_dig(), or if a number is out of range, or no dig is
 /// feasible

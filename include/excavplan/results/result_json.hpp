@@ -8,11 +8,13 @@
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/efficiency/run_comparison.hpp>
+#include <excavplan/job/job_cost.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/recording/recording.hpp>
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/sensing/survey_plan.hpp>
+#include <excavplan/trial/job_trial.hpp>
 
 /// @file
 /// Results as one line of JSON, with the keys and units that the tools print with --json
@@ -49,6 +51,17 @@ std::string to_json(const std::string& file, const RecordingContents& contents);
 std::string to_json(const JobStep& step);
 /// As `plan-site show --json` prints it.
 std::string to_json(const JobProgress& progress);
+
+/// What simulate-site finds in a job that was played.
+std::string to_json(const JobTrial& trial);
+
+/// What plan-site estimates of a job.
+std::string to_json(const JobEstimate& estimate, const JobOutline& job,
+                    const std::optional<JobCost>& cost = {});
+
+/// Volumes as estimate-density prints them, and a density.
+std::string to_json(const VolumeChange& change);
+std::string to_json(const RelativeDensity& density);
 
 /// What a survey is expected to measure, and what it needs for an error of the density of so many
 /// points.

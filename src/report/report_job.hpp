@@ -12,7 +12,7 @@
 /// @file
 /// What a report shows of a whole job.
 
-namespace excavplan::tools {
+namespace excavplan {
 
 struct ReportJob {
   JobHistory history;
@@ -27,4 +27,4 @@ nlohmann::ordered_json to_json(const ReportJob& job);
 /// Rows of HTML, one for each step.
 std::string step_rows(const JobHistory& history);
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

@@ -5,12 +5,16 @@
 #include <excavplan/planning/rehearsal.hpp>
 #include <excavplan/sensing/scene.hpp>
 
+#include "figures/change_figure.hpp"
 #include "report/report.hpp"
 
 /// @file
-/// The pages about digs, without file, title and plot.
+/// The pages about digs.
 
-namespace excavplan::tools {
+namespace excavplan {
+
+/// What was measured of a dig.
+Report survey_report(const ChangeSheet& sheet);
 
 /// A simulated dig. @param scene  with the history of its dig
 Report scene_report(const Machine& machine, const DigScene& scene);
@@ -19,4 +23,4 @@ Report scene_report(const Machine& machine, const DigScene& scene);
 Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site,
                    const std::optional<DigResult>& dig);
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

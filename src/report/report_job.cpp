@@ -14,7 +14,7 @@
 #include "job/cell_codes.hpp"
 #include "report/report_parts.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 using Eigen::ArrayXXd;
@@ -271,4 +271,4 @@ std::string step_rows(const JobHistory& history) {
   return rows;
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

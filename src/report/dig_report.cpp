@@ -2,12 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/dig_report.hpp"
 
-#include "base/text.hpp"
+#include <excavplan/simulation/dig_ground.hpp>
 
-namespace excavplan::tools {
+#include "base/text.hpp"
+#include "drawing/plot.hpp"
+#include "figures/dig_figures.hpp"
+
+namespace excavplan {
+namespace {
+
+std::string section_of(const DugDig& dug) { return to_svg(lay_out(section_figure(dug))); }
+
+}  // namespace
+
+Report survey_report(const ChangeSheet& sheet) {
+  Report report;
+  report.title = "Relative density of the ground from two scans";
+  report.headline = {"density_percent", "bulking_factor", "volume.excavated_m3",
+                     "volume.spilled_m3", "volume.dumped_m3"};
+  report.plot = to_svg(lay_out(height_change_figure(sheet)));
+  report.plot_always = true;
+  report.scene.areas = surveyed_areas(sheet.change, sheet.before);
+  report.scene.zones = sheet.change.zones;
+  report.note =
+      "The ground after the dig is that before it plus the height change that was measured.";
+  return report;
+}
 
 Report scene_report(const Machine& machine, const DigScene& scene) {
   Report report;
+  report.title = scene_title(scene);
+  report.plot = section_of({machine, scene.path, scene.dig, boom_plane_profile(scene.before),
+                            boom_plane_profile(scene.after), report.title});
   report.headline = {"payload_mass_kg", "energy_kj",     "efficiency_kg_per_kj",
                      "duration_s",      "peak_force_kn", "bulking_factor"};
   report.scene.areas = {{{{"before", scene.before.surface()}, {"after", scene.after.surface()}}}};
@@ -23,6 +49,7 @@ Report scene_report(const Machine& machine, const DigScene& scene) {
 Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site,
                    const std::optional<DigResult>& dig) {
   Report report;
+  report.title = plan_title(plan, site);
   report.headline = {"payload_mass_kg", "energy_kj",    "efficiency_kg_per_kj",
                      "cycle.energy_kj", "cycle.time_s", "cycle.rate_t_per_h"};
   report.scene.areas = {{{{"before", site.ground.surface()}}}};
@@ -31,7 +58,10 @@ Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& 
     report.fault = plan.stopped ? "Stopped before any dig was found." : "There is no dig.";
     return report;
   }
-  report.scene.areas.front().states.push_back({"planned", dig->after(site.ground).surface()});
+  const Terrain after = dig->after(site.ground);
+  report.plot = section_of({machine, plan.path, *dig, boom_plane_profile(site.ground),
+                            boom_plane_profile(after), report.title});
+  report.scene.areas.front().states.push_back({"planned", after.surface()});
   report.scene.digs = {{"planned dig", plan.path, plan.trajectory, dig->history}};
   report.note = "Planned ground and loads are those of the planned dig, simulated once at " +
                 readable(site.density_percent) +
@@ -39,4 +69,4 @@ Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& 
   return report;
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

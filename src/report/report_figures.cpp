@@ -12,7 +12,7 @@
 #include "base/text.hpp"
 #include "drawing/drawing.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -106,8 +106,9 @@ struct Entry {
 
 std::string sd_key(const std::string& key) { return stem_of(key) + "_sd" + suffix_of(key); }
 
-std::string interval_key(const std::string& key) {
-  return stem_of(key) + "_interval" + suffix_of(key);
+/// As results of digs and those of jobs call it.
+std::array<std::string, 2> interval_keys(const std::string& key) {
+  return {stem_of(key) + "_interval" + suffix_of(key), key + "_interval"};
 }
 
 Entry entry_of(const Json& object, const std::string& key) {
@@ -115,8 +116,10 @@ Entry entry_of(const Json& object, const std::string& key) {
   if (const auto sd = object.find(sd_key(key)); sd != object.end() && sd->is_number()) {
     figure.sd = sd->get<double>();
   }
-  if (const auto range = object.find(interval_key(key)); range != object.end() && range->is_array())
-    figure.interval = &*range;
+  for (const std::string& name : interval_keys(key)) {
+    if (const auto range = object.find(name); range != object.end() && range->is_array())
+      figure.interval = &*range;
+  }
   return figure;
 }
 
@@ -170,7 +173,8 @@ std::set<std::string> companions(const Json& object) {
   std::set<std::string> keys;
   for (const auto& [key, value] : object.items()) {
     if (!value.is_number()) continue;
-    keys.insert({sd_key(key), interval_key(key)});
+    const auto intervals = interval_keys(key);
+    keys.insert({sd_key(key), intervals[0], intervals[1]});
   }
   return keys;
 }
@@ -291,6 +295,38 @@ std::string list_table(const std::string& name, const Json& list) {
   return table(words_of(name), head, rows, columns.size() > 5) + below;  // ours
 }
 
+/// Objects of numbers that have the same names.
+bool is_matrix(const Json& value) {
+  if (!value.is_object() || value.size() < 2 || !value.front().is_object()) return false;
+  const auto fits = [&](const Json& row) {
+    if (!row.is_object() || row.size() < 2 || row.size() != value.front().size()) return false;
+    for (const auto& [key, number] : row.items()) {
+      if (!number.is_number() || !value.front().contains(key)) return false;
+    }
+    return true;
+  };
+  return std::all_of(value.begin(), value.end(), fits);
+}
+
+/// A row for each of its objects; the unit is that of the whole.
+std::string matrix_table(const std::string& name, const Json& matrix) {
+  const std::string unit = shown_unit(name);
+  std::string head = head_cell("");
+  for (const auto& [key, value] : matrix.front().items()) head += head_cell(words_of(key));
+  std::string rows;
+  for (const auto& [of, row] : matrix.items()) {
+    rows += "<tr><th scope=\"row\">" + xml_escaped(capital(words_of(stem_of(of)))) + "</th>";
+    for (const auto& [key, value] : matrix.front().items()) {
+      const Entry figure = entry_of(row, key);
+      rows += cell(exact(joined(joined(name, of), key), figure) + attribute("class", "number"),
+                   readable(row.at(key).get<double>(), 2));
+    }
+    rows += "</tr>\n";
+  }
+  return table(words_of(stem_of(name)) + (unit.empty() ? "" : " [" + unit + "]"), head, rows,
+               matrix.front().size() > 3);  // ours
+}
+
 bool is_list_of_objects(const Json& value) {
   return value.is_array() && !value.empty() &&
          std::all_of(value.begin(), value.end(), [](const Json& each) { return each.is_object(); });
@@ -336,7 +372,9 @@ std::string figure_tables(const Json& result) {
   std::string tables;
   for (const auto& [key, value] : result.items()) {
     if (key == "tool" || key == "version" || key == "warnings") continue;
-    if (value.is_object()) {
+    if (is_matrix(value)) {
+      tables += matrix_table(key, value);
+    } else if (value.is_object()) {
       tables += figure_table(words_of(key), key, value);
     } else if (is_list_of_objects(value)) {
       tables += list_table(key, value);
@@ -369,4 +407,4 @@ std::string headline_tiles(const Json& result, const std::vector<std::string>& k
   return tiles;
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

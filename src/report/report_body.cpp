@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "drawing/drawing.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 /// JSON that cannot end the element it stands in.
@@ -71,7 +71,11 @@ ReportBody body_of(const ReportScene& scene, const std::string& note) {
           embedded(to_json(scene)),
           app({"page", "data", "colours", "scene", "kinematics", "legend", "stage", "ground_mesh",
                "ground_model", "machine_model", "view", "axes", "section", "charts", "dig_charts",
-               "player", "dig_page", "end"})};
+               "player", "dig_page", "end", "copy"})};
+}
+
+ReportBody plain_body(const std::string& note) {
+  return {"", html(note), "{}", app({"page", "copy"}), false};
 }
 
 ReportBody body_of(const ReportJob& job, const std::string& note) {
@@ -80,9 +84,10 @@ ReportBody body_of(const ReportJob& job, const std::string& note) {
       "Frame: that of the site, x east, y north, z up; headings counter-clockwise from x; "
       "lengths in metres.",
       embedded(to_json(job)),
-      app({"page", "data", "cells", "colours", "job_scene", "kinematics", "legend", "stage",
-           "ground_mesh", "machine_model", "job_view", "job_map", "axes", "job_section", "charts",
-           "job_charts", "player", "job_page", "end"})};
+      app({"page",       "data",    "cells",    "colours",     "job_scene",
+           "kinematics", "legend",  "stage",    "ground_mesh", "machine_model",
+           "job_view",   "job_map", "axes",     "job_section", "charts",
+           "job_charts", "player",  "job_page", "end",         "copy"})};
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

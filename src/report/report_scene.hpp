@@ -15,7 +15,7 @@
 /// @file
 /// What a report draws in three dimensions and in charts: ground, machine and digs.
 
-namespace excavplan::tools {
+namespace excavplan {
 
 /// One state of the ground.
 struct ShownGround {
@@ -57,4 +57,4 @@ std::vector<ReportArea> surveyed_areas(const VolumeChange& change,
 /// cells are coarsened.
 nlohmann::ordered_json to_json(const ReportScene& scene);
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

@@ -13,7 +13,7 @@
 #include "planning/planned_digs.hpp"
 #include "report/report_parts.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -224,4 +224,4 @@ nlohmann::ordered_json to_json(const ReportScene& scene) {
   return json;
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

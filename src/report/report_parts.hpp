@@ -11,7 +11,7 @@
 /// @file
 /// What the pages about digs and jobs write alike for data/report/app.
 
-namespace excavplan::tools {
+namespace excavplan {
 
 /// Rounded to 1e-6, far below what can be seen; null if not finite.
 inline nlohmann::ordered_json number(double value) {
@@ -24,4 +24,4 @@ Eigen::Index coarsening(Eigen::Index rows, Eigen::Index cols);
 
 nlohmann::ordered_json machine_json(const Machine& machine);
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

@@ -11,7 +11,7 @@
 /// @file
 /// Files of data/report put together.
 
-namespace excavplan::tools {
+namespace excavplan {
 
 /// A text for a page: no control characters, no bytes that are not UTF-8, no markup.
 std::string html(const std::string& text);
@@ -24,9 +24,12 @@ std::string filled(const std::string& name, const std::map<std::string, std::str
 /// What the page draws, and how.
 struct ReportBody {
   std::string markup, frame, data, scripts;
+  bool draws = true;  ///< in three dimensions and charts
 };
 /// @param note  what ground and loads are
 ReportBody body_of(const ReportScene& scene, const std::string& note);
 ReportBody body_of(const ReportJob& job, const std::string& note);
+/// Of a page without ground.
+ReportBody plain_body(const std::string& note);
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

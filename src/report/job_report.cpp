@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "drawing/plot.hpp"
+#include "figures/job_estimate_figure.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 std::string title_of(const JobDesign& design) {
@@ -32,6 +34,23 @@ Report trial_report(const JobTrial& trial, ReportJob job) {
   return report;
 }
 
+Report estimate_report(const JobEstimate& estimate, const std::optional<JobCost>& cost,
+                       const EstimatedJob& job) {
+  Report report;
+  report.title = (job.design.empty() ? "Job" : job.design) + " in " + job.soil + ", " +
+                 job.machine + ": estimate";
+  report.headline = {"digs", "time_min", "fuel_l", "truckloads", "cost"};
+  report.plot = to_svg(lay_out(job_estimate_figure(estimate, cost)));
+  report.plot_always = true;
+  for (const std::string& each : estimate.unlike) {
+    report.fault += (report.fault.empty() ? "Not trustworthy: " : "; ") + each;
+  }
+  report.note =
+      "Intervals are of 95 %. Digs and truckloads are whole, rounded up; truckloads as if all soil "
+      "went by truck; time with moves and scans.";
+  return report;
+}
+
 Report progress_report(const JobProgress& progress, ReportJob job) {
   Report report;
   report.title = title_of(job.history.design);
@@ -46,4 +65,4 @@ Report progress_report(const JobProgress& progress, ReportJob job) {
   return report;
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

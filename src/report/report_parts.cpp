@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report_parts.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -65,4 +65,4 @@ nlohmann::ordered_json machine_json(const Machine& machine) {
   return json;
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

@@ -10,7 +10,7 @@
 #include "report/report_body.hpp"
 #include "report/report_figures.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 std::string verdict(const Report& report, const ReportedRun& run) {
@@ -43,21 +43,29 @@ std::string warning_list(const std::vector<Warning>& warnings) {
   return list + "</ul></section>\n";
 }
 
-std::string setting_rows(const std::vector<Setting>& settings) {
+/// @param all  with the defaults
+std::string setting_section(const std::vector<Setting>& settings, bool all) {
   std::string rows;
   for (const Setting& setting : settings) {
+    if (!all && !setting.given) continue;
     rows += std::string("<tr") + (setting.given ? " class=\"given\"" : "") +
             "><th scope=\"row\"><code>" + html(setting.name) + "</code></th><td>" +
             html(setting.value) + "</td><td>" + (setting.given ? "given" : "default") +
             "</td></tr>\n";
   }
-  return rows;
+  if (rows.empty()) return "";
+  return "<section id=\"settings\">\n<h2>Inputs and settings</h2>\n"
+         "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">option</th>"
+         "<th scope=\"col\">value</th><th scope=\"col\">origin</th></tr></thead>\n<tbody>\n" +
+         rows + "</tbody></table></div>\n</section>\n";
 }
 
 std::string printed(const std::vector<std::string>& lines) {
+  if (lines.empty()) return "";
   std::string text;
   for (const std::string& line : lines) text += html(line) + '\n';
-  return text;
+  return "<details id=\"printed\"><summary>Result as printed</summary>\n<pre>" + text +
+         "</pre>\n</details>\n";
 }
 
 /// The plot as a part of the page, without the head of a file.
@@ -68,12 +76,16 @@ std::string plot_part(const Report& report) {
          report.plot.substr(start) + "</figure>\n";
 }
 
+ReportBody body_of(const Report& report) {
+  if (report.job) return body_of(*report.job, report.note);
+  return report.scene.areas.empty() ? plain_body(report.note) : body_of(report.scene, report.note);
+}
+
 }  // namespace
 
 std::string html_page(const Report& report, const ReportedRun& run) {
   const auto result = parse_ordered_json("the result", run.json);
-  const ReportBody body =
-      report.job ? body_of(*report.job, report.note) : body_of(report.scene, report.note);
+  const ReportBody body = body_of(report);
   const std::map<std::string, std::string> parts = {
       {"key", checksum_text(body.data + report.title)},
       {"title", html(report.title)},
@@ -86,19 +98,18 @@ std::string html_page(const Report& report, const ReportedRun& run) {
       {"scene", body.markup},
       {"frame", body.frame},
       {"figures", figure_tables(result)},
-      {"settings", setting_rows(run.settings)},
+      {"settings", setting_section(run.settings, body.draws)},
       {"lines", printed(run.lines)},
       {"result", xml_escaped(run.json)},
       {"data", body.data},
       {"style", shipped("vendor/uplot.css") + shipped("style.css")},
-      {"vendor", shipped("vendor/vendor.js")},
+      {"contains", body.draws
+                       ? " It contains three.js and uPlot (MIT licence, texts in the source of "
+                         "the page)."
+                       : ""},
+      {"vendor", body.draws ? shipped("vendor/vendor.js") : ""},
       {"app", body.scripts}};
   return filled("page.html", parts);
 }
 
-Page page_of(Report report, const std::string& file) {
-  return {file, [report = std::make_shared<const Report>(std::move(report))](
-                    const ReportedRun& run) { return html_page(*report, run); }};
-}
-
-}  // namespace excavplan::tools
+}  // namespace excavplan

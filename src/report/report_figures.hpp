@@ -7,7 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace excavplan::tools {
+namespace excavplan {
 
 /// Every number of a result in tables, with its unit, standard deviation and interval.
 std::string figure_tables(const nlohmann::ordered_json& result);
@@ -16,4 +16,4 @@ std::string figure_tables(const nlohmann::ordered_json& result);
 std::string headline_tiles(const nlohmann::ordered_json& result,
                            const std::vector<std::string>& keys);
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

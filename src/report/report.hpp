@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "frame/page.hpp"
 #include "report/report_job.hpp"
 #include "report/report_scene.hpp"
+#include "report/reported_run.hpp"
 
 /// @file
 /// The page that --report writes (docs/report.md).
 
-namespace excavplan::tools {
+namespace excavplan {
 
-/// What a tool adds to its outcome for a page about it.
+/// What a page is about, beside the run.
 struct Report {
   std::string title;
   std::vector<std::string> headline;  ///< keys of the result that come first, "cycle.energy_kj"
@@ -34,7 +34,4 @@ struct Report {
 /// @throws Error (bad_file) if data/report cannot be read
 std::string html_page(const Report& report, const ReportedRun& run);
 
-/// The page of a report, for Outcome::page.
-Page page_of(Report report, const std::string& file);
-
-}  // namespace excavplan::tools
+}  // namespace excavplan
