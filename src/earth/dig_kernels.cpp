@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 // Compiled for several processors, the one at hand is chosen when the program starts. Not under
@@ -26,8 +27,27 @@ inline double height_at(const ProfileSide& side, double x) {
 
 }  // namespace
 
+namespace {
+
+/// Bit i of number i.
+struct CellBits {
+  constexpr CellBits() {
+    for (std::size_t i = 0; i < most_cells_of_a_line; ++i) bit[i] = std::uint64_t{1} << i;
+  }
+  std::uint64_t bit[most_cells_of_a_line] = {};
+};
+constexpr CellBits cell_bits;
+
+inline CoveredCells ends_of(std::uint64_t covered) {
+  if (covered == 0) return {};
+  return {static_cast<std::size_t>(__builtin_ctzll(covered)),
+          most_cells_of_a_line - static_cast<std::size_t>(__builtin_clzll(covered))};
+}
+
+}  // namespace
+
 EXCAVPLAN_FOR_EACH_PROCESSOR
-std::size_t find_bases(const PileLine& line, double* __restrict distance, double* __restrict base) {
+CoveredCells find_bases(const PileLine& line, double* __restrict base) {
   const double* __restrict height = line.height;
   const double* __restrict across = line.across;
   const std::size_t count = line.count;
@@ -36,28 +56,26 @@ std::size_t find_bases(const PileLine& line, double* __restrict distance, double
   const double reach = line.reach;
   const double slope = line.slope;
   const double seen_to = line.seen_to;
-  std::size_t covered = 0;
+  std::uint64_t covered = 0;
   if (along == 0.0) {  // spares the roots: that of a square is exact
     for (std::size_t i = 0; i < count; ++i) {
       const double away = across[i];
       const double level = height[i] + slope * away;
-      distance[i] = away;
       const bool covers = (away <= reach) & (level < seen_to);
       base[i] = covers ? level : none;
-      covered += covers ? 1 : 0;
+      covered |= covers ? cell_bits.bit[i] : 0;
     }
-    return covered;
+    return ends_of(covered);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const double root = std::sqrt(along_square + across[i] * across[i]);
     const double away = across[i] > 0.0 ? root : along;
     const double level = height[i] + slope * away;
-    distance[i] = away;
     const bool covers = (away <= reach) & (level < seen_to);  // not on unknown ground
     base[i] = covers ? level : none;
-    covered += covers ? 1 : 0;
+    covered |= covers ? cell_bits.bit[i] : 0;
   }
-  return covered;
+  return ends_of(covered);
 }
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
@@ -69,8 +87,10 @@ void raise_to(const PileShare& pile, const double* __restrict base, const CellLa
   double* __restrict height = cells.height;
   const std::size_t count = cells.count;
   for (std::size_t i = 0; i < count; ++i) {
-    loose[i] += part * (top - base[i]);
-    height[i] = bank[i] + loose[i];
+    const double above = part * (top - base[i]);
+    const double raised = loose[i] + (top > base[i] ? above : 0.0);
+    loose[i] = raised;
+    height[i] = bank[i] + raised;
   }
 }
 

@@ -218,18 +218,23 @@ void GroundWindow::compact(std::size_t cell, double pressure) {
   changed(cell);
 }
 
-void GroundWindow::raise_to(double top, double part, std::size_t cell, std::size_t count,
+void GroundWindow::raise_to(const PileShare& pile, std::size_t cell, std::size_t count,
                             const double* base) {
   if (!layers_.void_ratio.empty()) {
-    for (std::size_t i = 0; i < count; ++i) raise_loose(cell + i, part * (top - base[i]));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (pile.top > base[i]) raise_loose(cell + i, pile.part * (pile.top - base[i]));
+    }
     return;
   }
   const std::size_t last = cell + count - 1;
   const std::size_t back = count - 1;
-  excavplan::raise_to({top, part}, base,
+  excavplan::raise_to(pile, base,
                       {count, &layers_.bank[last] - back, &layers_.loose[last] - back,
                        &layers_.height[last] - back});
-  std::fill_n(&layers_.awake[last] - back, count, std::uint16_t{1});
+  std::uint16_t* awake = &layers_.awake[last] - back;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (pile.top > base[i]) awake[i] = 1;
+  }
 }
 
 void GroundWindow::mix(std::size_t cell, double thickness) {

@@ -10,6 +10,7 @@
 
 #include "earth/cell_block.hpp"
 #include "earth/coarse_ground.hpp"
+#include "earth/dig_kernels.hpp"
 #include "earth/ground_layers.hpp"
 
 namespace excavplan {
@@ -99,8 +100,8 @@ class GroundWindow {
     layers_.awake[cell] = 1;
   }
 
-  /// Raises so many cells in succession as raise_to() does.
-  void raise_to(double top, double part, std::size_t cell, std::size_t count, const double* base);
+  /// Raises so many cells in succession as excavplan::raise_to() does.
+  void raise_to(const PileShare& pile, std::size_t cell, std::size_t count, const double* base);
 
   /// Whether a cell has changed, or one of its four neighbours has become lower, since let_sleep():
   /// a cell that is asleep is at rest.
