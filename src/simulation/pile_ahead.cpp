@@ -36,7 +36,7 @@ bool PileAhead::look(double top) {
     runs_.clear();
     partly_ = {};
     kept_ = 0;
-    foot_ = 0.0;
+    foot_square_ = 0.0;
     const auto around = static_cast<Index>(std::ceil(reach / cell));
     const auto ahead = static_cast<Index>(std::ceil(level_length_ / cell));
     const CellBlock level = {swath_.first_row(), swath_.end_row(), lip - ahead, lip + 1};
@@ -44,6 +44,7 @@ bool PileAhead::look(double top) {
     ground_.cover(seen_);
     find_rows();
     for (Index col = seen_.col_begin; col < seen_.col_end; ++col) look_at_column(col, reach);
+    foot_ = std::sqrt(foot_square_);
     if (foot_ + rim < reach || reach > farthest) return true;
   }
 }
@@ -97,8 +98,8 @@ void PileAhead::look_at_rows(const Column& column, Index first, Index end, doubl
     if (covered.first == covered.end) continue;
     std::copy(bases + covered.first, bases + covered.end, bases);
     // Across the pile distances fall and rise: the farthest cell is one of the ends.
-    foot_ = std::max({foot_, distance(column, begin + static_cast<Index>(covered.first)),
-                      distance(column, begin + static_cast<Index>(covered.end) - 1)});
+    foot_square_ = std::max({foot_square_, square(column, begin + static_cast<Index>(covered.first)),
+                             square(column, begin + static_cast<Index>(covered.end) - 1)});
     Run& run = runs_.emplace_back();  // written in place: a copy waits for each of its members
     run.cell = cell + covered.first;
     run.bases = kept_;
@@ -109,11 +110,10 @@ void PileAhead::look_at_rows(const Column& column, Index first, Index end, doubl
   }
 }
 
-/// From the level top to a cell.
-double PileAhead::distance(const Column& column, Index row) const {
+/// Of the distance from the level top to a cell [m^2].
+double PileAhead::square(const Column& column, Index row) const {
   const double across = across_[static_cast<std::size_t>(row - seen_.row_begin)];
-  if (column.along == 0.0) return across;
-  return across > 0.0 ? std::sqrt(column.along * column.along + across * across) : column.along;
+  return column.along * column.along + across * across;
 }
 
 double PileAhead::volume(double top) const {

@@ -52,7 +52,7 @@ class PileAhead {
   void find_rows();
   void look_at_column(Eigen::Index col, double reach);
   void look_at_rows(const Column& column, Eigen::Index first, Eigen::Index end, double share);
-  double distance(const Column& column, Eigen::Index row) const;
+  double square(const Column& column, Eigen::Index row) const;
 
   GroundWindow& ground_;
   const Swath& swath_;
@@ -62,6 +62,7 @@ class PileAhead {
   double level_length_ = 0.0;
   double seen_to_ = 0.0;  ///< top for which all places are known
   double foot_ = 0.0;     ///< of that pile, from its level top [m]
+  double foot_square_ = 0.0;
   CellBlock seen_;
   std::vector<double> across_;  ///< of the rows seen, beyond the sides of the bucket [m]
   std::vector<Run> runs_;
