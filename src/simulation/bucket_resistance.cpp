@@ -52,6 +52,8 @@ HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_
 
 /// Where the blade is in one stretch, and what it cuts there.
 struct BucketResistance::Place {
+  explicit Place(const CutSoil& above) : soil(above) {}
+
   Vector2d tip;
   Vector2d lip;  ///< the ground is cut up to here
   Index col = 0;
@@ -82,14 +84,14 @@ struct BucketResistance::SlidingFace {
 
 /// Terms of the wedge's force that do not depend on the depth of the strip.
 struct BucketResistance::FaceTerms {
-  FaceTerms(const SoilState& state, const EarthmovingFactors& factors, bool packed)
+  FaceTerms(const RestingSoil& state, const EarthmovingFactors& factors, bool packed)
       : soil(state),
         n(factors),
         adhesion(packed ? state.cohesion : state.adhesion),
         friction(packed ? state.friction_angle : state.tool_friction_angle),
-        shear_at_rest(at_rest(state) * std::tan(state.friction_angle)) {}
+        shear_at_rest(state.rest.pressure * state.rest.tangent) {}
 
-  SoilState soil;
+  RestingSoil soil;
   EarthmovingFactors n;
   double adhesion;
   double friction;       ///< on the face [rad]
@@ -134,17 +136,17 @@ BucketResistance::Column BucketResistance::look_at(Index col) const {
 }
 
 Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double fill) {
-  Place place;
-  place.tip = 0.5 * (s.from + s.to);
+  const Vector2d tip = 0.5 * (s.from + s.to);
+  const Index col = swath_.column(tip.x());
+  Place place(soil_above(col, tip.y()));
+  place.tip = tip;
   place.lip = s.from;
-  place.col = swath_.column(place.tip.x());
+  place.col = col;
   place.motion = s.direction();
   place.climb = std::atan2(place.motion.y(), -place.motion.x());
   place.floor = s.at.phi3 + pi - model_.machine.beta();
-  const Vector2d up = model_.machine.up();
   const double depth = surface_at(place.col) - place.tip.y();
-  place.slope = surface_slope(place.col, depth) - std::atan2(up.x(), up.y());
-  place.soil = soil_above(place.col, place.tip.y());
+  place.slope = surface_slope(place.col, depth) - tilt_;
   // The penetration moves along the floor by definition: no wedge is pushed, the lip is driven in.
   Resistance r =
       s.phase == DigPhase::penetrate ? drive_in(place) : push_wedge(place, fill_in(cavity, fill));
@@ -153,13 +155,13 @@ Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double f
 }
 
 BucketResistance::Fill BucketResistance::fill_in(const Cavity& cavity, double volume) const {
-  const SoilState& loose = model_.loose;
+  const LayerSoil& loose = model_.loose;
   const Cavity::Packed packed = cavity.packed(volume);
   const double section = volume / model_.machine.bucket.width_inside;
   const double depth = section / floor_length();
   return {
       volume * loose.unit_weight,
-      section * at_rest(loose) * loose.unit_weight * depth * std::tan(loose.tool_friction_angle),
+      section * loose.rest.pressure * loose.unit_weight * depth * loose.tool_tangent,
       packed.front, packed.centroid.y()};
 }
 
@@ -224,7 +226,7 @@ struct BucketResistance::Layers {
   FaceTerms loose;
 };
 
-BucketResistance::FaceTerms BucketResistance::terms_of(const SoilState& soil,
+BucketResistance::FaceTerms BucketResistance::terms_of(const RestingSoil& soil,
                                                        const SlidingFace& face,
                                                        double slope) const {
   return {soil, model_.wedges.at(face.rake, slope, soil, face.packed), face.packed};
@@ -273,8 +275,8 @@ void BucketResistance::push_strips(const SlidingFace& face, const Place& place, 
     if (!even && strips_[i].empty()) {
       own.push_back(mean);
     } else if (!even) {
-      own.push_back({terms_of(ground_.bank_state(row, place.col), face, place.slope),
-                     terms_of(ground_.lying_state(row, place.col), face, place.slope)});
+      own.push_back({terms_of(RestingSoil(ground_.bank_state(row, place.col)), face, place.slope),
+                     terms_of(RestingSoil(ground_.lying_state(row, place.col)), face, place.slope)});
     }
     begin_piles(i, layers_of(i));
   }
@@ -339,7 +341,7 @@ BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean
   const auto force = [&](const FaceTerms& t, double depth, double above) {
     const double stuck = t.soil.cohesion + above * t.shear_at_rest;
     const SoilStrength strength = {t.soil.unit_weight, stuck, t.soil.adhesion};
-    return side_plane_force(wedge_of(t), t.n, strength, depth);
+    return side_plane_force(t.n, strength, t.soil.rest, depth);
   };
   SideForces sides;
   const double above = layers.loose.soil.unit_weight * mean.loose_depth;
@@ -435,13 +437,13 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     if (!(sunk > least_sunk)) continue;
     const Index col = swath_.column(point.x());
     const CutSoil ground = soil_above(col, point.y());
-    const SoilState& soil = ground.bank_depth > 0.0 ? ground.bank : ground.loose;
+    const LayerSoil& soil = ground.bank_depth > 0.0 ? ground.bank : ground.loose;
     const double pressure =
         std::min(1.0, sunk / footing) * bearing_capacity(soil, ground.overburden(), floor_length());
     const double area = side.norm() * segments / heel_samples * model_.machine.bucket.width_outside;
     const Vector2d inward = Vector2d(-side.y(), side.x()).normalized();
     const double force = pressure * area;
-    r.heel_force += force * (inward - std::tan(soil.tool_friction_angle) * motion);
+    r.heel_force += force * (inward - soil.tool_tangent * motion);
     r.heel_point += force * point;
     if (!(ground.bank_depth > 0.0) && !ground_.loose_is_even()) {
       r.pressed.push_back({col, pressure});
@@ -506,28 +508,27 @@ double BucketResistance::pile_at(const Place& place) const {
 }
 
 CutSoil BucketResistance::soil_above(Index col, double z) {
-  CutSoil cut;
-  cut.bank = ground_.bank_is_even() ? model_.bank : mean_bank(col);
-  cut.loose = ground_.loose_is_even() ? model_.loose : mean_loose(col);
+  CutSoil cut{ground_.bank_is_even() ? model_.bank : mean_bank(col),
+              ground_.loose_is_even() ? model_.loose : mean_loose(col)};
   cut.bank_depth = std::max(0.0, bank_at(col) - z);
   cut.loose_depth = std::max(0.0, surface_at(col) - z - cut.bank_depth);
   return cut;
 }
 
-SoilState BucketResistance::mean_bank(Index col) const {
+LayerSoil BucketResistance::mean_bank(Index col) const {
   const double e = swath_.mean([&](Index row) { return ground_.bank_void_ratio(row, col); });
-  return checked_bank_state(model_.soil,
-                            std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max));
+  return LayerSoil(checked_bank_state(
+      model_.soil, std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max)));
 }
 
 /// Of all its loose soil, or, where none lies, of soil just dug.
-SoilState BucketResistance::mean_loose(Index col) const {
+LayerSoil BucketResistance::mean_loose(Index col) const {
   const Terrain& before = ground_.before();
   const double thickness = swath_.mean([&](Index row) { return before.loose(row, col); });
   if (!(thickness > 0.0)) return model_.loose;
   const double sum = swath_.mean(
       [&](Index row) { return before.loose(row, col) * before.loose_void_ratio(row, col); });
-  return checked_loose_state(model_.soil, sum / thickness);
+  return LayerSoil(checked_loose_state(model_.soil, sum / thickness));
 }
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.
@@ -548,11 +549,11 @@ double BucketResistance::surface_slope(Index col, double depth) {
 /// between teeth follows in soil that they have broken. The cone index holds the friction on its
 /// cone; teeth are other wedges.
 double BucketResistance::penetrating_area(double driven, double depth,
-                                          const SoilState& soil) const {
+                                          const LayerSoil& soil) const {
   const Bucket& bucket = model_.machine.bucket;
   if (!bucket.teeth) return std::min(bucket.edge_thickness, depth) * bucket.width_outside;
   const Teeth& teeth = *bucket.teeth;
-  const double friction = std::tan(soil.tool_friction_angle);
+  const double friction = soil.tool_tangent;
   const double wedge =
       (1.0 + friction / std::tan(0.5 * teeth.angle)) / (1.0 + friction / std::tan(cone_half_angle));
   return std::min(1.0, driven / teeth.length) * wedge * teeth.count * teeth.width *
@@ -563,7 +564,7 @@ double BucketResistance::penetrating_area(double driven, double depth,
 double BucketResistance::driving_force(const CutSoil& cut, double driven) const {
   const Bucket& bucket = model_.machine.bucket;
   const double height = bucket.teeth ? bucket.teeth->thickness : bucket.edge_thickness;
-  return cut.mean_at_point(height, [&](const SoilState& soil) {
+  return cut.mean_at_point(height, [&](const LayerSoil& soil) {
     return cone_index(model_.soil, soil, cut.overburden() / soil.unit_weight) *
            penetrating_area(driven, cut.depth(), soil);
   });
@@ -575,12 +576,10 @@ double BucketResistance::edge_force(const CutSoil& cut, double climb) const {
   if (!(cut.depth() > 0.0)) return 0.0;
   const Bucket& bucket = model_.machine.bucket;
   const double thickness = std::min(bucket.edge_thickness, cut.depth());
-  const double pressure = cut.mean_at_point(thickness, [&](const SoilState& soil) {
-    const double phi = soil.friction_angle;
-    const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
-    return (0.5 * thickness * soil.unit_weight + soil.cohesion / std::tan(phi) +
-            cut.overburden() * active) *
-           blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle);
+  const double pressure = cut.mean_at_point(thickness, [&](const LayerSoil& soil) {
+    return (0.5 * thickness * soil.unit_weight + soil.cohesion / soil.rest.tangent +
+            cut.overburden() * soil.active) *
+           soil.blunt_edge;
   });
   const double yielding = pressure * thickness * bucket.width_outside;
   const double plunge = std::max(0.0, -std::sin(climb));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,8 +28,8 @@ struct HeightMapModel {
   Machine machine;
   SoilKind soil;
   double density_percent;
-  SoilState bank;
-  SoilState loose;
+  LayerSoil bank;
+  LayerSoil loose;
   HoldingSlopes slopes;
   SoilWedges wedges;
 };
@@ -42,6 +43,7 @@ class BucketResistance {
         ground_(ground),
         swath_(swath),
         path_(path),
+        tilt_(std::atan2(model.machine.up().x(), model.machine.up().y())),
         first_col_(ground.cells().col_begin),
         columns_(static_cast<std::size_t>(ground.cells().cols())),
         strips_(static_cast<std::size_t>(swath.rows())),
@@ -90,7 +92,7 @@ class BucketResistance {
   Fill fill_in(const Cavity& cavity, double volume) const;
   Resistance drive_in(const Place& place);
   Resistance push_wedge(const Place& place, const Fill& fill);
-  FaceTerms terms_of(const SoilState& soil, const SlidingFace& face, double slope) const;
+  FaceTerms terms_of(const RestingSoil& soil, const SlidingFace& face, double slope) const;
   FaceForce slide(const SlidingFace& face, const Place& place, const Fill& fill);
   void push_strips(const SlidingFace& face, const Place& place, const Layers& mean, double rise,
                    FaceForce& force);
@@ -111,10 +113,10 @@ class BucketResistance {
   static SideForces side_forces(const FaceForce& mean, const Layers& layers);
   double shearing_force(const Strip& strip, double rise, const Layers& layers) const;
   CutSoil soil_above(Eigen::Index col, double z);
-  SoilState mean_bank(Eigen::Index col) const;
-  SoilState mean_loose(Eigen::Index col) const;
+  LayerSoil mean_bank(Eigen::Index col) const;
+  LayerSoil mean_loose(Eigen::Index col) const;
   double surface_slope(Eigen::Index col, double depth);
-  double penetrating_area(double driven, double depth, const SoilState& soil) const;
+  double penetrating_area(double driven, double depth, const LayerSoil& soil) const;
   double driving_force(const CutSoil& cut, double driven) const;
   double edge_force(const CutSoil& cut, double climb) const;
   double side_plate_area(double depth, double floor) const;
@@ -123,6 +125,7 @@ class BucketResistance {
   const GroundWindow& ground_;
   const Swath& swath_;
   const DigPath& path_;
+  double tilt_;  ///< of gravity against the machine, in the boom plane [rad]
   Eigen::Index first_col_;
   std::vector<Column> columns_;      ///< from first_col_ on
   Column beyond_;                    ///< one that is not among them
