@@ -41,8 +41,9 @@ CellBlock CellBlock::widened(Index margin, Index map_rows, Index map_cols) const
           std::max<Index>(0, col_begin - margin), std::min(map_cols, col_end + margin)};
 }
 
-GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells)
-    : whole_(whole), soil_(soil) {
+GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells,
+                           Future future)
+    : whole_(whole), future_(future), soil_(soil) {
   cover(cells);
 }
 
@@ -194,6 +195,7 @@ void GroundWindow::lower(std::size_t cell, std::size_t count, const double* bank
     own_loose[i] = own_loose[i] > loose[i] ? own_loose[i] - loose[i] : 0.0;
     height[i] = own_bank[i] + own_loose[i];
   }
+  if (future_ == Future::none) return;
   const std::size_t column = column_step();
   std::fill(&layers_.awake[cell - 1], &layers_.awake[last + 1] + 1, std::uint16_t{1});
   for (const std::size_t beside : {cell - column, cell + column}) {
@@ -231,6 +233,7 @@ void GroundWindow::raise_to(const PileShare& pile, std::size_t cell, std::size_t
   excavplan::raise_to(pile, base,
                       {count, &layers_.bank[last] - back, &layers_.loose[last] - back,
                        &layers_.height[last] - back});
+  if (future_ == Future::none) return;
   std::uint16_t* awake = &layers_.awake[last] - back;
   for (std::size_t i = 0; i < count; ++i) {
     if (pile.top > base[i]) awake[i] = 1;

@@ -22,8 +22,14 @@ namespace excavplan {
 /// pressed since, is denser.
 class GroundWindow {
  public:
+  /// What becomes of it after a dig.
+  enum class Future {
+    slides,  ///< which cells may slide is noted
+    none     ///< it is never looked at again: slump() is not called
+  };
   /// @throws Error (bad_input) as cover()
-  GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells);
+  GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells,
+               Future future = Future::slides);
   ~GroundWindow();
   GroundWindow(const GroundWindow&) = delete;
   GroundWindow& operator=(const GroundWindow&) = delete;
@@ -137,6 +143,7 @@ class GroundWindow {
   static constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
 
   const Terrain& whole_;
+  Future future_;
   bool lay_ = false;  ///< any loose soil, in the window
   GroundSoil soil_;
   CellBlock cells_;
