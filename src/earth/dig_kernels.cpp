@@ -7,14 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-// Compiled for several processors, the one at hand is chosen when the program starts. Not under
-// sanitizers, which start later.
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define EXCAVPLAN_FOR_EACH_PROCESSOR __attribute__((target_clones("avx2", "default")))
-#else
-#define EXCAVPLAN_FOR_EACH_PROCESSOR
-#endif
+#include "earth/each_processor.hpp"
 
 namespace excavplan {
 namespace {

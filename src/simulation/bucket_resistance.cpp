@@ -82,22 +82,6 @@ struct BucketResistance::SlidingFace {
   bool packed = false;
 };
 
-/// Terms of the wedge's force that do not depend on the depth of the strip.
-struct BucketResistance::FaceTerms {
-  FaceTerms(const RestingSoil& state, const EarthmovingFactors& factors, bool packed)
-      : soil(state),
-        n(factors),
-        adhesion(packed ? state.cohesion : state.adhesion),
-        friction(packed ? state.friction_angle : state.tool_friction_angle),
-        shear_at_rest(state.rest.pressure * state.rest.tangent) {}
-
-  RestingSoil soil;
-  EarthmovingFactors n;
-  double adhesion;
-  double friction;       ///< on the face [rad]
-  double shear_at_rest;  ///< friction on a vertical plane per vertical stress, at rest [-]
-};
-
 /// In the frame of the motion [N].
 struct BucketResistance::FaceForce {
   /// Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
@@ -192,7 +176,9 @@ Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) {
   const auto face_at = [&](double angle, bool packed) {
     return SlidingFace{angle, std::max({angle, angle + place.climb, edge}), packed};
   };
-  find_strips(place);
+  const StripColumn column = column_at(place);
+  strips_.find_piles(column);
+  strips_.find(column, ground_.cell_size());
   SlidingFace face = face_at(place.floor, false);
   FaceForce force = slide(face, place, fill);
   if (fill.front > 0.0) {
@@ -221,14 +207,8 @@ Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) {
   return r;
 }
 
-struct BucketResistance::Layers {
-  FaceTerms bank;
-  FaceTerms loose;
-};
-
-BucketResistance::FaceTerms BucketResistance::terms_of(const RestingSoil& soil,
-                                                       const SlidingFace& face,
-                                                       double slope) const {
+FaceTerms BucketResistance::terms_of(const RestingSoil& soil, const SlidingFace& face,
+                                     double slope) const {
   return {soil, model_.wedges.at(face.rake, slope, soil, face.packed), face.packed};
 }
 
@@ -236,7 +216,7 @@ BucketResistance::FaceTerms BucketResistance::terms_of(const RestingSoil& soil,
 /// the weight of what lies above.
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Place& place,
                                                     const Fill& fill) {
-  const Layers mean = {terms_of(place.soil.bank, face, place.slope),
+  const LayerTerms mean = {terms_of(place.soil.bank, face, place.slope),
                        terms_of(place.soil.loose, face, place.slope)};
   FaceForce force;
   force.fade = std::cos(std::clamp(place.climb, 0.0, 0.5 * pi));
@@ -264,77 +244,38 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
 
 /// The wedge row by row, each with the soil of its own cell.
 /// @param rise  of the soil in the bucket above the lip [m]
-void BucketResistance::push_strips(const SlidingFace& face, const Place& place, const Layers& mean,
-                                   double rise, FaceForce& force) {
+void BucketResistance::push_strips(const SlidingFace& face, const Place& place,
+                                   const LayerTerms& mean, double rise, FaceForce& force) {
   const bool even = ground_.bank_is_even() && ground_.loose_is_even();
-  const FaceTerms dug = even ? mean.loose : terms_of(model_.loose, face, place.slope);
-  std::vector<Layers> own;  // of the rows, where they differ
-  const auto layers_of = [&](std::size_t i) -> const Layers& { return even ? mean : own[i]; };
-  for (std::size_t i = 0; i < strips_.size(); ++i) {
+  const WedgeTerms wedge = {force.fade, rise, ground_.cell_size(),
+                            even ? mean.loose : terms_of(model_.loose, face, place.slope)};
+  std::vector<LayerTerms> own;  // of the rows, where they differ
+  for (std::size_t i = 0; !even && i < strips_.count(); ++i) {
     const Index row = swath_.first_row() + static_cast<Index>(i);
-    if (!even && strips_[i].empty()) {
-      own.push_back(mean);
-    } else if (!even) {
-      own.push_back({terms_of(RestingSoil(ground_.bank_state(row, place.col)), face, place.slope),
-                     terms_of(RestingSoil(ground_.lying_state(row, place.col)), face, place.slope)});
-    }
-    begin_piles(i, layers_of(i));
+    own.push_back(strips_.is_empty(i) ? mean : terms_in(row, face, place));
   }
+  if (even) strips_.begin(0, strips_.count(), mean, wedge.cell);
+  for (std::size_t i = 0; i < own.size(); ++i) strips_.begin(i, 1, own[i], wedge.cell);
   add_piles(place);
-  for (std::size_t i = 0; i < strips_.size(); ++i) {
-    const Strip& strip = strips_[i];
-    if (strip.empty()) continue;
-    const double width = swath_.cover(static_cast<Index>(i)) * ground_.cell_size();
-    const Layers& layers = layers_of(i);
-    const double pile = pile_on_wedge(i, layers);
-    force.push(width * passive_of_bank(strip, pile, layers),
-               width * layers.bank.adhesion * strip.bank, layers.bank);
-    if (strip.loose > 0.0) {
-      force.push(width * passive_of_loose(strip, pile, layers.loose),
-                 width * layers.loose.adhesion * strip.loose, layers.loose);
-    }
-    force.push(width * dug.soil.unit_weight * pile * pile * dug.n.gamma, 0.0, dug);
-    if (force.fade < 1.0) {
-      force.along += width * (1.0 - force.fade) * shearing_force(strip, rise, layers);
-    }
-    force.on_face += width * weight_on_face(strip, layers);
-    force.bank_depth += width * strip.bank;
-    force.loose_depth += width * strip.loose;
-  }
-  force.bank_depth /= model_.machine.bucket.width_outside;
-  force.loose_depth /= model_.machine.bucket.width_outside;
+  StripSums sums;
+  if (even) strips_.push(0, strips_.count(), mean, wedge, sums);
+  for (std::size_t i = 0; i < own.size(); ++i) strips_.push(i, 1, own[i], wedge, sums);
+  force.along = sums.along;
+  force.across = sums.across;
+  force.on_face = sums.on_face;
+  force.bank_depth = sums.bank_depth / model_.machine.bucket.width_outside;
+  force.loose_depth = sums.loose_depth / model_.machine.bucket.width_outside;
 }
 
-/// Of the wedge's part in the bank of one row on the face, per metre of width [N/m].
-/// @param pile  thickness of what was pushed up on it [m]
-double BucketResistance::passive_of_bank(const Strip& strip, double pile,
-                                         const Layers& layers) const {
-  const FaceTerms& t = layers.bank;
-  const double surcharge =
-      model_.loose.unit_weight * pile + layers.loose.soil.unit_weight * strip.loose;
-  return strip.bank * (t.soil.unit_weight * strip.bank * t.n.gamma + t.soil.cohesion * t.n.c +
-                       surcharge * t.n.q + t.adhesion * t.n.ca);
-}
-
-/// Likewise of its part in the loose layer.
-double BucketResistance::passive_of_loose(const Strip& strip, double pile,
-                                          const FaceTerms& t) const {
-  const double surcharge = model_.loose.unit_weight * pile;
-  return strip.loose * (t.soil.unit_weight * strip.loose * t.n.gamma + t.soil.cohesion * t.n.c +
-                        surcharge * t.n.q + t.adhesion * t.n.ca);
-}
-
-/// Weight of the wedge's part over the face, per metre of width [N/m].
-double BucketResistance::weight_on_face(const Strip& strip, const Layers& layers) {
-  const double of_bank = 0.5 * strip.bank * strip.bank * layers.bank.n.cot_rake;
-  const double of_loose = strip.loose * (strip.bank * layers.bank.n.cot_rake +
-                                         0.5 * strip.loose * layers.loose.n.cot_rake);
-  return layers.bank.soil.unit_weight * of_bank + layers.loose.soil.unit_weight * of_loose;
+LayerTerms BucketResistance::terms_in(Index row, const SlidingFace& face,
+                                      const Place& place) const {
+  return {terms_of(RestingSoil(ground_.bank_state(row, place.col)), face, place.slope),
+          terms_of(RestingSoil(ground_.lying_state(row, place.col)), face, place.slope)};
 }
 
 /// On the side planes of the mean wedge; that of the loose layer is also over that of the bank.
 BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean,
-                                                           const Layers& layers) {
+                                                           const LayerTerms& layers) {
   const auto wedge_of = [&](const FaceTerms& t) {
     return CuttingWedge{t.n.rake, t.soil.friction_angle, t.friction, 0.0};
   };
@@ -360,61 +301,17 @@ BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean
   return sides;
 }
 
-/// What is not pushed up is sheared off and lifted to where it lies in the bucket, `rise` above the
-/// lip: against the motion, per metre of width [N/m].
-double BucketResistance::shearing_force(const Strip& strip, double rise,
-                                        const Layers& layers) const {
-  const SoilState& bank = layers.bank.soil;
-  const SoilState& loose = layers.loose.soil;
-  const double above = loose.unit_weight * strip.loose;
-  const double in_bank =
-      bank.cohesion + (above + 0.5 * bank.unit_weight * strip.bank) * layers.bank.shear_at_rest;
-  const double in_loose = loose.cohesion + 0.5 * above * layers.loose.shear_at_rest;
-  const double lifted =
-      bank.unit_weight * strip.bank + above + model_.loose.unit_weight * strip.pile;
-  const double lift = std::max(0.0, rise - 0.5 * (strip.depth() + strip.pile));
-  return strip.bank * in_bank + strip.loose * in_loose + lifted * lift;
-}
-
-void BucketResistance::find_strips(const Place& place) {
-  for (std::size_t i = 0; i < strips_.size(); ++i) {
-    strips_[i] = strip_at(swath_.first_row() + static_cast<Index>(i), place);
-  }
-}
-
-/// In its first cell the wedge of a row has what lies there.
-void BucketResistance::begin_piles(std::size_t i, const Layers& layers) {
-  const Strip& strip = strips_[i];
-  const double ahead =
-      strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
-  const double cells = strip.depth() > 0.0 ? ahead / ground_.cell_size() : 0.0;
-  wedge_cells_[i] = cells;
-  piles_[i] = std::min(1.0, cells) * strip.pile;
-}
-
 /// Adds what lies on the other cells of all wedges.
 void BucketResistance::add_piles(const Place& place) {
-  const double longest = *std::max_element(wedge_cells_.begin(), wedge_cells_.end());
-  const std::size_t count = strips_.size();
   std::size_t cell = ground_.at(swath_.first_row(), place.col);
   Index col = place.col - 1;
-  for (double left = longest - 1.0; left > 0.0 && col >= ground_.cells().col_begin; left -= 1.0) {
+  for (double left = strips_.longest() - 1.0; left > 0.0 && col >= ground_.cells().col_begin;
+       left -= 1.0) {
     cell -= ground_.column_step();
-    add_pile(count, ground_.looses(cell, count), &ground_.before().loose(swath_.first_row(), col),
-             wedge_cells_.data(), piles_.data());
+    strips_.add_next(ground_.looses(cell, strips_.count()),
+                     &ground_.before().loose(swath_.first_row(), col));
     --col;
   }
-}
-
-/// What was pushed up over the top of the wedge of a row, as an even layer on all of it; what lies
-/// over the face is in the bucket, and payload. Where nothing else is cut, all of it [m].
-double BucketResistance::pile_on_wedge(std::size_t i, const Layers& layers) const {
-  const Strip& strip = strips_[i];
-  if (!(strip.depth() > 0.0)) return strip.pile;
-  const double ahead =
-      strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
-  const double over = strip.bank * layers.bank.n.cot_rake + strip.loose * layers.loose.n.cot_rake;
-  return piles_[i] * ground_.cell_size() / (ahead + over);
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
@@ -480,31 +377,23 @@ double BucketResistance::surface_between(double x) {
 
 // ---- Parts of them ------------------------------------------------------------------------------
 
-BucketResistance::Strip BucketResistance::strip_at(Index row, const Place& place) const {
-  const double bank = ground_.before().bank.z(row, place.col) - place.tip.y();
-  const double loose = ground_.lying(row, place.col);
-  const double pile = pile_in(row, place);
-  if (!(bank + loose + pile > 0.0)) return {};
-  return {std::max(0.0, bank), std::min(loose, std::max(0.0, bank + loose)),
-          std::min(pile, bank + loose + pile)};
-}
-
-/// What this dig has laid on a cell that the lip is in or has not reached [m].
-double BucketResistance::pile_in(Index row, const Place& place) const {
-  const double lay = ground_.lying(row, place.col);
-  const double lies = ground_.loose(row, place.col);
-  if (!(lay > 0.0)) return lies;
+StripColumn BucketResistance::column_at(const Place& place) const {
   const HeightMap& map = ground_.before().bank;
+  const Index row = swath_.first_row();
   const double right = map.origin.x() + map.cell_size * static_cast<double>(place.col + 1);
   const double length = std::clamp(right - place.lip.x(), 0.0, map.cell_size);
-  const double passed = length / map.cell_size * swath_.cover(row - swath_.first_row());
-  const double line = place.lip.y() + 0.5 * length * place.motion.y() / place.motion.x();
-  const double left = std::clamp(line - map.z(row, place.col), 0.0, lay);
-  return std::max(0.0, lies - lay + passed * (lay - left));
+  return {place.tip.y(),
+          length / map.cell_size,
+          place.lip.y() + 0.5 * length * place.motion.y() / place.motion.x(),
+          &map.z(row, place.col),
+          &ground_.before().loose(row, place.col),
+          ground_.looses(ground_.at(row, place.col), strips_.count()),
+          swath_.covers()};
 }
 
-double BucketResistance::pile_at(const Place& place) const {
-  return swath_.mean([&](Index row) { return pile_in(row, place); });
+double BucketResistance::pile_at(const Place& place) {
+  const double* piles = strips_.find_piles(column_at(place));
+  return swath_.mean([&](Index row) { return piles[row - swath_.first_row()]; });
 }
 
 CutSoil BucketResistance::soil_above(Index col, double z) {
