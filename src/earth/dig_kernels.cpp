@@ -200,13 +200,20 @@ void cut_cells(const CutLine& line, const CutColumn& column, double* __restrict 
 }
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
-void add_pile(std::size_t count, const double* __restrict loose, const double* __restrict lay,
-              double* __restrict cells, double* __restrict sum) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const double left = cells[i] - 1.0;
-    const double share = left > 0.0 ? std::min(1.0, left) : 0.0;
-    cells[i] = left;
-    sum[i] += share * std::max(0.0, loose[i] - lay[i]);
+void add_piles(const PiledColumns& columns, std::size_t count, double* __restrict cells,
+               double* __restrict sum) {
+  const std::size_t rows = columns.rows;
+  const double* __restrict loose = columns.loose;
+  const double* __restrict lay = columns.lay;
+  for (; count > 0; --count) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double left = cells[i] - 1.0;
+      const double share = left > 0.0 ? std::min(1.0, left) : 0.0;
+      cells[i] = left;
+      sum[i] += share * std::max(0.0, loose[i] - lay[i]);
+    }
+    loose += columns.loose_step;
+    lay += columns.lay_step;
   }
 }
 

@@ -108,9 +108,16 @@ struct CutColumn {
 /// For each row what lies above the line.
 void cut_cells(const CutLine& line, const CutColumn& column, double* bank, double* loose);
 
-/// Adds to `sum` what was pushed up on the next column of a wedge, of which `cells` cells were left
-/// before, at most 1 of it.
-void add_pile(std::size_t count, const double* loose, const double* lay, double* cells,
-              double* sum);
+/// Columns of cells one after another, of which each is a wedge's next: `step` from one to the next.
+struct PiledColumns {
+  std::size_t rows = 0;
+  const double* loose = nullptr;  ///< of the first column, now [m]
+  const double* lay = nullptr;    ///< before the dig [m]
+  std::ptrdiff_t loose_step = 0;
+  std::ptrdiff_t lay_step = 0;
+};
+/// Adds to `sum` what was pushed up on so many columns of a wedge, of which `cells` cells were left
+/// before, at most 1 of each.
+void add_piles(const PiledColumns& columns, std::size_t count, double* cells, double* sum);
 
 }  // namespace excavplan

@@ -303,15 +303,15 @@ BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean
 
 /// Adds what lies on the other cells of all wedges.
 void BucketResistance::add_piles(const Place& place) {
-  std::size_t cell = ground_.at(swath_.first_row(), place.col);
-  Index col = place.col - 1;
-  for (double left = strips_.longest() - 1.0; left > 0.0 && col >= ground_.cells().col_begin;
-       left -= 1.0) {
-    cell -= ground_.column_step();
-    strips_.add_next(ground_.looses(cell, strips_.count()),
-                     &ground_.before().loose(swath_.first_row(), col));
-    --col;
-  }
+  const Index row = swath_.first_row();
+  const Index columns = std::min(static_cast<Index>(std::ceil(strips_.longest() - 1.0)),
+                                 place.col - ground_.cells().col_begin);
+  if (columns <= 0) return;
+  const Eigen::ArrayXXd& lay = ground_.before().loose;
+  const std::size_t next = ground_.at(row, place.col) - ground_.column_step();
+  strips_.add({strips_.count(), ground_.looses(next, strips_.count()), &lay(row, place.col - 1),
+               -static_cast<std::ptrdiff_t>(ground_.column_step()), -lay.rows()},
+              static_cast<std::size_t>(columns));
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
@@ -328,8 +328,10 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     const auto k = static_cast<std::size_t>(along);
     const Vector2d side = cavity.corner(k + 1) - cavity.corner(k);
     const Vector2d point = s.at.tip + cavity.corner(k) + (along - std::floor(along)) * side;
-    if (!(point.x() > s.to.x() && swept_to(point.x(), behind) > point.y() + least_sunk)) continue;
-    const double level = std::min(swept_to(point.x(), behind), surface_between(point.x()));
+    if (!(point.x() > s.to.x())) continue;
+    const double swept = swept_to(point.x(), behind);
+    if (!(swept > point.y() + least_sunk)) continue;
+    const double level = std::min(swept, surface_between(point.x()));
     const double sunk = level - point.y();
     if (!(sunk > least_sunk)) continue;
     const Index col = swath_.column(point.x());

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "earth/dig_kernels.hpp"
 #include "earth/each_processor.hpp"
 
 namespace excavplan {
@@ -186,8 +185,8 @@ double WedgeStrips::longest() const {
   return *std::max_element(at(cells_left), at(cells_left) + count_);
 }
 
-void WedgeStrips::add_next(const double* lies, const double* lay) {
-  add_pile(count_, lies, lay, at(cells_left), at(piled));
+void WedgeStrips::add(const PiledColumns& columns, std::size_t count) {
+  add_piles(columns, count, at(cells_left), at(piled));
 }
 
 void WedgeStrips::push(std::size_t first, std::size_t count, const LayerTerms& layers,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "earth/dig_kernels.hpp"
 #include "soil/cut_soil.hpp"
 #include "soil/earthmoving.hpp"
 
@@ -75,8 +76,8 @@ class WedgeStrips {
   void begin(std::size_t first, std::size_t count, const LayerTerms& layers, double cell);
   /// Length of the longest wedge [cells].
   double longest() const;
-  /// Adds what lies on the next column of each wedge.
-  void add_next(const double* lies, const double* lay);
+  /// Adds what lies on so many columns that come next on each wedge.
+  void add(const PiledColumns& columns, std::size_t count);
   /// Adds the forces on so many strips from `first` on, in their order.
   void push(std::size_t first, std::size_t count, const LayerTerms& layers, const WedgeTerms& wedge,
             StripSums& sums) const;
