@@ -108,7 +108,8 @@ struct CutColumn {
 /// For each row what lies above the line.
 void cut_cells(const CutLine& line, const CutColumn& column, double* bank, double* loose);
 
-/// Columns of cells one after another, of which each is a wedge's next: `step` from one to the next.
+/// Columns of cells one after another, of which each is a wedge's next: `step` from one to the
+/// next.
 struct PiledColumns {
   std::size_t rows = 0;
   const double* loose = nullptr;  ///< of the first column, now [m]

@@ -21,6 +21,8 @@ using Eigen::Index;
 
 constexpr Index spare = 8;  // cells by which a window grows beyond the requested extent; ours
 
+constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
+
 double dry_density(const SoilKind& kind, double void_ratio) {
   return kind.specific_gravity * water_density / (1.0 + void_ratio);
 }
@@ -42,8 +44,8 @@ CellBlock CellBlock::widened(Index margin, Index map_rows, Index map_cols) const
 }
 
 GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells,
-                           Future future)
-    : whole_(whole), future_(future), soil_(soil) {
+                           bool slides)
+    : whole_(whole), slides_(slides), soil_(soil) {
   cover(cells);
 }
 
@@ -195,7 +197,7 @@ void GroundWindow::lower(std::size_t cell, std::size_t count, const double* bank
     own_loose[i] = own_loose[i] > loose[i] ? own_loose[i] - loose[i] : 0.0;
     height[i] = own_bank[i] + own_loose[i];
   }
-  if (future_ == Future::none) return;
+  if (!slides_) return;
   const std::size_t column = column_step();
   std::fill(&layers_.awake[cell - 1], &layers_.awake[last + 1] + 1, std::uint16_t{1});
   for (const std::size_t beside : {cell - column, cell + column}) {
@@ -233,7 +235,7 @@ void GroundWindow::raise_to(const PileShare& pile, std::size_t cell, std::size_t
   excavplan::raise_to(pile, base,
                       {count, &layers_.bank[last] - back, &layers_.loose[last] - back,
                        &layers_.height[last] - back});
-  if (future_ == Future::none) return;
+  if (!slides_) return;
   std::uint16_t* awake = &layers_.awake[last] - back;
   for (std::size_t i = 0; i < count; ++i) {
     if (pile.top > base[i]) awake[i] = 1;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
-
 #include <Eigen/Core>
 
 #include <excavplan/ground/terrain.hpp>
@@ -22,14 +20,10 @@ namespace excavplan {
 /// pressed since, is denser.
 class GroundWindow {
  public:
-  /// What becomes of it after a dig.
-  enum class Future {
-    slides,  ///< which cells may slide is noted
-    none     ///< it is never looked at again: slump() is not called
-  };
+  /// @param slides  false: slump() is never called, which cells may slide is not noted
   /// @throws Error (bad_input) as cover()
   GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells,
-               Future future = Future::slides);
+               bool slides = true);
   ~GroundWindow();
   GroundWindow(const GroundWindow&) = delete;
   GroundWindow& operator=(const GroundWindow&) = delete;
@@ -140,10 +134,8 @@ class GroundWindow {
   template <typename Cell>
   double mass(Cell&& cell_mass) const;
 
-  static constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
-
   const Terrain& whole_;
-  Future future_;
+  bool slides_;
   bool lay_ = false;  ///< any loose soil, in the window
   GroundSoil soil_;
   CellBlock cells_;

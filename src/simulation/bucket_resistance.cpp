@@ -143,10 +143,9 @@ BucketResistance::Fill BucketResistance::fill_in(const Cavity& cavity, double vo
   const Cavity::Packed packed = cavity.packed(volume);
   const double section = volume / model_.machine.bucket.width_inside;
   const double depth = section / floor_length();
-  return {
-      volume * loose.unit_weight,
-      section * loose.rest.pressure * loose.unit_weight * depth * loose.tool_tangent,
-      packed.front, packed.centroid.y()};
+  return {volume * loose.unit_weight,
+          section * loose.rest.pressure * loose.unit_weight * depth * loose.tool_tangent,
+          packed.front, packed.centroid.y()};
 }
 
 /// Lip and teeth against the cone index, friction on both sides of the floor and of the side
@@ -217,7 +216,7 @@ FaceTerms BucketResistance::terms_of(const RestingSoil& soil, const SlidingFace&
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Place& place,
                                                     const Fill& fill) {
   const LayerTerms mean = {terms_of(place.soil.bank, face, place.slope),
-                       terms_of(place.soil.loose, face, place.slope)};
+                           terms_of(place.soil.loose, face, place.slope)};
   FaceForce force;
   force.fade = std::cos(std::clamp(place.climb, 0.0, 0.5 * pi));
   push_strips(face, place, mean, fill.rise, force);

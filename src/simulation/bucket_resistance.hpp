@@ -108,9 +108,9 @@ class BucketResistance {
   const DigPath& path_;
   double tilt_;  ///< of gravity against the machine, in the boom plane [rad]
   Eigen::Index first_col_;
-  std::vector<Column> columns_;      ///< from first_col_ on
-  Column beyond_;                    ///< one that is not among them
-  WedgeStrips strips_;               ///< of the rows of the swath, at the stretch
+  std::vector<Column> columns_;  ///< from first_col_ on
+  Column beyond_;                ///< one that is not among them
+  WedgeStrips strips_;           ///< of the rows of the swath, at the stretch
 };
 
 }  // namespace excavplan

@@ -43,7 +43,7 @@ class Dig {
         options_(options),
         swath_(terrain.bank, model.machine.bucket.width_outside),
         ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path),
-                comes_to_rest() ? GroundWindow::Future::slides : GroundWindow::Future::none),
+                comes_to_rest()),
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
         pile_(ground_, swath_, model.machine.bucket.width_outside, model.slopes.heap),

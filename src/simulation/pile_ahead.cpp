@@ -98,8 +98,9 @@ void PileAhead::look_at_rows(const Column& column, Index first, Index end, doubl
     if (covered.first == covered.end) continue;
     std::copy(bases + covered.first, bases + covered.end, bases);
     // Across the pile distances fall and rise: the farthest cell is one of the ends.
-    foot_square_ = std::max({foot_square_, square(column, begin + static_cast<Index>(covered.first)),
-                             square(column, begin + static_cast<Index>(covered.end) - 1)});
+    foot_square_ =
+        std::max({foot_square_, square(column, begin + static_cast<Index>(covered.first)),
+                  square(column, begin + static_cast<Index>(covered.end) - 1)});
     Run& run = runs_.emplace_back();  // written in place: a copy waits for each of its members
     run.cell = cell + covered.first;
     run.bases = kept_;

@@ -144,7 +144,8 @@ void push_strips(const Ground& ground, const double* piled, const LayerTerms& la
     const double shear_in_loose = in_loose.soil.cohesion + 0.5 * above * in_loose.shear_at_rest;
     const double lifted = in_bank.soil.unit_weight * b + above + dug_weight * ground.pile[i];
     const double lift = std::max(0.0, all.rise - 0.5 * (b + l + ground.pile[i]));
-    force.shear[i] = w * (1.0 - all.fade) * (b * shear_in_bank + l * shear_in_loose + lifted * lift);
+    force.shear[i] =
+        w * (1.0 - all.fade) * (b * shear_in_bank + l * shear_in_loose + lifted * lift);
 
     const double bank_over = 0.5 * b * b * in_bank.n.cot_rake;
     const double loose_over = l * (b * in_bank.n.cot_rake + 0.5 * l * in_loose.n.cot_rake);

@@ -32,9 +32,9 @@ struct LayerTerms {
 
 /// What a column of cells has in the rows of the strips.
 struct StripColumn {
-  double tip = 0.0;     ///< level of the tip [m]
-  double passed = 0.0;  ///< share of the column that the lip has passed
-  double line = 0.0;    ///< level of the tip's line in the middle of that [m]
+  double tip = 0.0;               ///< level of the tip [m]
+  double passed = 0.0;            ///< share of the column that the lip has passed
+  double line = 0.0;              ///< level of the tip's line in the middle of that [m]
   const double* bank = nullptr;   ///< before the dig [m]
   const double* lay = nullptr;    ///< loose soil, before the dig [m]
   const double* lies = nullptr;   ///< loose soil, now [m]
@@ -68,9 +68,7 @@ class WedgeStrips {
   const double* find_piles(const StripColumn& column);
   /// The strips above the tip in a column of which the piles were found.
   void find(const StripColumn& column, double cell);
-  bool is_empty(std::size_t i) const {
-    return !(at(bank)[i] + at(loose)[i] + at(pile)[i] > 0.0);
-  }
+  bool is_empty(std::size_t i) const { return !(at(bank)[i] + at(loose)[i] + at(pile)[i] > 0.0); }
 
   /// Begins the wedges of so many strips from `first` on with what lies in their first cell.
   void begin(std::size_t first, std::size_t count, const LayerTerms& layers, double cell);
