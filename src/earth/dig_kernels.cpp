@@ -4,16 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
-// Compiled for several processors, the one at hand is chosen when the program starts. Not under
-// sanitizers, which start later.
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define EXCAVPLAN_FOR_EACH_PROCESSOR __attribute__((target_clones("avx2", "default")))
-#else
-#define EXCAVPLAN_FOR_EACH_PROCESSOR
-#endif
+#include "earth/each_processor.hpp"
 
 namespace excavplan {
 namespace {
@@ -26,8 +20,27 @@ inline double height_at(const ProfileSide& side, double x) {
 
 }  // namespace
 
+namespace {
+
+/// Bit i of number i.
+struct CellBits {
+  constexpr CellBits() {
+    for (std::size_t i = 0; i < most_cells_of_a_line; ++i) bit[i] = std::uint64_t{1} << i;
+  }
+  std::uint64_t bit[most_cells_of_a_line] = {};
+};
+constexpr CellBits cell_bits;
+
+inline CoveredCells ends_of(std::uint64_t covered) {
+  if (covered == 0) return {};
+  return {static_cast<std::size_t>(__builtin_ctzll(covered)),
+          most_cells_of_a_line - static_cast<std::size_t>(__builtin_clzll(covered))};
+}
+
+}  // namespace
+
 EXCAVPLAN_FOR_EACH_PROCESSOR
-std::size_t find_bases(const PileLine& line, double* __restrict distance, double* __restrict base) {
+CoveredCells find_bases(const PileLine& line, double* __restrict base) {
   const double* __restrict height = line.height;
   const double* __restrict across = line.across;
   const std::size_t count = line.count;
@@ -36,28 +49,26 @@ std::size_t find_bases(const PileLine& line, double* __restrict distance, double
   const double reach = line.reach;
   const double slope = line.slope;
   const double seen_to = line.seen_to;
-  std::size_t covered = 0;
+  std::uint64_t covered = 0;
   if (along == 0.0) {  // spares the roots: that of a square is exact
     for (std::size_t i = 0; i < count; ++i) {
       const double away = across[i];
       const double level = height[i] + slope * away;
-      distance[i] = away;
       const bool covers = (away <= reach) & (level < seen_to);
       base[i] = covers ? level : none;
-      covered += covers ? 1 : 0;
+      covered |= covers ? cell_bits.bit[i] : 0;
     }
-    return covered;
+    return ends_of(covered);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const double root = std::sqrt(along_square + across[i] * across[i]);
     const double away = across[i] > 0.0 ? root : along;
     const double level = height[i] + slope * away;
-    distance[i] = away;
     const bool covers = (away <= reach) & (level < seen_to);  // not on unknown ground
     base[i] = covers ? level : none;
-    covered += covers ? 1 : 0;
+    covered |= covers ? cell_bits.bit[i] : 0;
   }
-  return covered;
+  return ends_of(covered);
 }
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
@@ -69,8 +80,10 @@ void raise_to(const PileShare& pile, const double* __restrict base, const CellLa
   double* __restrict height = cells.height;
   const std::size_t count = cells.count;
   for (std::size_t i = 0; i < count; ++i) {
-    loose[i] += part * (top - base[i]);
-    height[i] = bank[i] + loose[i];
+    const double above = part * (top - base[i]);
+    const double raised = loose[i] + (top > base[i] ? above : 0.0);
+    loose[i] = raised;
+    height[i] = bank[i] + raised;
   }
 }
 
@@ -187,13 +200,20 @@ void cut_cells(const CutLine& line, const CutColumn& column, double* __restrict 
 }
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
-void add_pile(std::size_t count, const double* __restrict loose, const double* __restrict lay,
-              double* __restrict cells, double* __restrict sum) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const double left = cells[i] - 1.0;
-    const double share = left > 0.0 ? std::min(1.0, left) : 0.0;
-    cells[i] = left;
-    sum[i] += share * std::max(0.0, loose[i] - lay[i]);
+void add_piles(const PiledColumns& columns, std::size_t count, double* __restrict cells,
+               double* __restrict sum) {
+  const std::size_t rows = columns.rows;
+  const double* __restrict loose = columns.loose;
+  const double* __restrict lay = columns.lay;
+  for (; count > 0; --count) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double left = cells[i] - 1.0;
+      const double share = left > 0.0 ? std::min(1.0, left) : 0.0;
+      cells[i] = left;
+      sum[i] += share * std::max(0.0, loose[i] - lay[i]);
+    }
+    loose += columns.loose_step;
+    lay += columns.lay_step;
   }
 }
 

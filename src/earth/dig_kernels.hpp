@@ -11,7 +11,9 @@
 
 namespace excavplan {
 
-/// A line of cells across the pile ahead.
+constexpr std::size_t most_cells_of_a_line = 64;
+
+/// A line of cells across the pile ahead, at most most_cells_of_a_line.
 struct PileLine {
   double along = 0.0;    ///< of all cells, from the level top [m]
   double reach = 0.0;    ///< from the level top, up to which soil is sought [m]
@@ -21,10 +23,14 @@ struct PileLine {
   const double* height = nullptr;  ///< of the cells
   const double* across = nullptr;  ///< of the cells beyond the sides of the bucket, >= 0 [m]
 };
-/// For each cell its distance from the level top and the level of the top from which on it is
-/// covered; that is infinite where it is out of reach or above `seen_to`.
-/// @return number of the cells that can be covered
-std::size_t find_bases(const PileLine& line, double* distance, double* base);
+/// The cells from the first that can be covered to the last; both 0 if there is none.
+struct CoveredCells {
+  std::size_t first = 0;
+  std::size_t end = 0;
+};
+/// For each cell the level of the top from which on it is covered; that is infinite where it is out
+/// of reach or above `seen_to`.
+CoveredCells find_bases(const PileLine& line, double* base);
 
 /// Cells in succession.
 struct CellLayers {
@@ -38,8 +44,7 @@ struct PileShare {
   double top = 0.0;
   double part = 0.0;
 };
-/// Adds to the loose layer what lies between the bases of the cells and the top of the pile. All
-/// bases are below the top.
+/// Adds to the loose layer what lies between the bases of the cells and the top of the pile.
 void raise_to(const PileShare& pile, const double* base, const CellLayers& cells);
 
 /// A side of the bucket's profile, over the slices from `from` on and below `end` [m].
@@ -103,9 +108,17 @@ struct CutColumn {
 /// For each row what lies above the line.
 void cut_cells(const CutLine& line, const CutColumn& column, double* bank, double* loose);
 
-/// Adds to `sum` what was pushed up on the next column of a wedge, of which `cells` cells were left
-/// before, at most 1 of it.
-void add_pile(std::size_t count, const double* loose, const double* lay, double* cells,
-              double* sum);
+/// Columns of cells one after another, of which each is a wedge's next: `step` from one to the
+/// next.
+struct PiledColumns {
+  std::size_t rows = 0;
+  const double* loose = nullptr;  ///< of the first column, now [m]
+  const double* lay = nullptr;    ///< before the dig [m]
+  std::ptrdiff_t loose_step = 0;
+  std::ptrdiff_t lay_step = 0;
+};
+/// Adds to `sum` what was pushed up on so many columns of a wedge, of which `cells` cells were left
+/// before, at most 1 of each.
+void add_piles(const PiledColumns& columns, std::size_t count, double* cells, double* sum);
 
 }  // namespace excavplan

@@ -21,6 +21,8 @@ using Eigen::Index;
 
 constexpr Index spare = 8;  // cells by which a window grows beyond the requested extent; ours
 
+constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
+
 double dry_density(const SoilKind& kind, double void_ratio) {
   return kind.specific_gravity * water_density / (1.0 + void_ratio);
 }
@@ -41,8 +43,9 @@ CellBlock CellBlock::widened(Index margin, Index map_rows, Index map_cols) const
           std::max<Index>(0, col_begin - margin), std::min(map_cols, col_end + margin)};
 }
 
-GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells)
-    : whole_(whole), soil_(soil) {
+GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells,
+                           bool slides)
+    : whole_(whole), slides_(slides), soil_(soil) {
   cover(cells);
 }
 
@@ -194,6 +197,7 @@ void GroundWindow::lower(std::size_t cell, std::size_t count, const double* bank
     own_loose[i] = own_loose[i] > loose[i] ? own_loose[i] - loose[i] : 0.0;
     height[i] = own_bank[i] + own_loose[i];
   }
+  if (!slides_) return;
   const std::size_t column = column_step();
   std::fill(&layers_.awake[cell - 1], &layers_.awake[last + 1] + 1, std::uint16_t{1});
   for (const std::size_t beside : {cell - column, cell + column}) {
@@ -218,18 +222,24 @@ void GroundWindow::compact(std::size_t cell, double pressure) {
   changed(cell);
 }
 
-void GroundWindow::raise_to(double top, double part, std::size_t cell, std::size_t count,
+void GroundWindow::raise_to(const PileShare& pile, std::size_t cell, std::size_t count,
                             const double* base) {
   if (!layers_.void_ratio.empty()) {
-    for (std::size_t i = 0; i < count; ++i) raise_loose(cell + i, part * (top - base[i]));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (pile.top > base[i]) raise_loose(cell + i, pile.part * (pile.top - base[i]));
+    }
     return;
   }
   const std::size_t last = cell + count - 1;
   const std::size_t back = count - 1;
-  excavplan::raise_to({top, part}, base,
+  excavplan::raise_to(pile, base,
                       {count, &layers_.bank[last] - back, &layers_.loose[last] - back,
                        &layers_.height[last] - back});
-  std::fill_n(&layers_.awake[last] - back, count, std::uint16_t{1});
+  if (!slides_) return;
+  std::uint16_t* awake = &layers_.awake[last] - back;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (pile.top > base[i]) awake[i] = 1;
+  }
 }
 
 void GroundWindow::mix(std::size_t cell, double thickness) {

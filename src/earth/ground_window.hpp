@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
-
 #include <Eigen/Core>
 
 #include <excavplan/ground/terrain.hpp>
 
 #include "earth/cell_block.hpp"
 #include "earth/coarse_ground.hpp"
+#include "earth/dig_kernels.hpp"
 #include "earth/ground_layers.hpp"
 
 namespace excavplan {
@@ -21,8 +20,10 @@ namespace excavplan {
 /// pressed since, is denser.
 class GroundWindow {
  public:
+  /// @param slides  false: slump() is never called, which cells may slide is not noted
   /// @throws Error (bad_input) as cover()
-  GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells);
+  GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells,
+               bool slides = true);
   ~GroundWindow();
   GroundWindow(const GroundWindow&) = delete;
   GroundWindow& operator=(const GroundWindow&) = delete;
@@ -99,8 +100,8 @@ class GroundWindow {
     layers_.awake[cell] = 1;
   }
 
-  /// Raises so many cells in succession as raise_to() does.
-  void raise_to(double top, double part, std::size_t cell, std::size_t count, const double* base);
+  /// Raises so many cells in succession as excavplan::raise_to() does.
+  void raise_to(const PileShare& pile, std::size_t cell, std::size_t count, const double* base);
 
   /// Whether a cell has changed, or one of its four neighbours has become lower, since let_sleep():
   /// a cell that is asleep is at rest.
@@ -133,9 +134,8 @@ class GroundWindow {
   template <typename Cell>
   double mass(Cell&& cell_mass) const;
 
-  static constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
-
   const Terrain& whole_;
+  bool slides_;
   bool lay_ = false;  ///< any loose soil, in the window
   GroundSoil soil_;
   CellBlock cells_;

@@ -6,20 +6,33 @@
 
 namespace excavplan {
 
-Eigen::ArrayXXd highest_within(const Eigen::ArrayXXd& z, Eigen::Index cells) {
-  Eigen::ArrayXXd rows = z;
-  for (Eigen::Index shift = 1; shift <= std::min(cells, z.rows() - 1); ++shift) {
-    const Eigen::Index n = z.rows() - shift;
-    rows.topRows(n) = rows.topRows(n).max(z.bottomRows(n));
-    rows.bottomRows(n) = rows.bottomRows(n).max(z.topRows(n));
+namespace {
+
+using Eigen::Index;
+
+/// Highest of each column's neighbours within so many columns to both sides. What is highest within
+/// a reach is known of each column; of the reach itself and two beside it, it is that of thrice as
+/// much.
+Eigen::ArrayXXd highest_beside(Eigen::ArrayXXd z, Index cells) {
+  const Index last = z.cols() - 1;
+  for (Index reach = 0; reach < std::min(cells, last);) {
+    const Index shift = std::min(2 * reach + 1, cells - reach);
+    const Eigen::ArrayXXd within = z;
+    for (Index col = 0; col <= last; ++col) {
+      z.col(col) = within.col(col)
+                       .max(within.col(std::max<Index>(col - shift, 0)))
+                       .max(within.col(std::min(col + shift, last)));
+    }
+    reach += shift;
   }
-  Eigen::ArrayXXd both = rows;
-  for (Eigen::Index shift = 1; shift <= std::min(cells, z.cols() - 1); ++shift) {
-    const Eigen::Index n = z.cols() - shift;
-    both.leftCols(n) = both.leftCols(n).max(rows.rightCols(n));
-    both.rightCols(n) = both.rightCols(n).max(rows.leftCols(n));
-  }
-  return both;
+  return z;
+}
+
+}  // namespace
+
+Eigen::ArrayXXd highest_within(const Eigen::ArrayXXd& z, Index cells) {
+  const Eigen::ArrayXXd across = highest_beside(z.transpose(), cells).transpose();
+  return highest_beside(across, cells);
 }
 
 AreaSums::AreaSums(const Eigen::ArrayXXd& field)

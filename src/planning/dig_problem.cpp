@@ -78,6 +78,8 @@ constexpr double DigPathOptions::*path_rules[] = {
     &DigPathOptions::step, &DigPathOptions::min_heel_clearance, &DigPathOptions::max_depth,
     &DigPathOptions::track_margin, &DigPathOptions::lift_clearance};
 
+constexpr std::size_t most_laid = 200;  // paths kept until they are simulated; ours
+
 /// Why the first dig failed that did; empty if none did.
 std::string first_failure(const SearchResult& found) {
   for (const SearchRecord& record : found.history) {
@@ -274,18 +276,30 @@ VectorXd DigProblem::point_of(const KnownDig& known) const {
 /// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
 std::variant<VectorXd, Evaluation> DigProblem::lay_out(const VectorXd& point) {
   const DigParameters parameters = to_dig_parameters(point);
-  const auto path = path_by(layout_, parameters,
-                            start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
+  auto path = path_by(layout_, parameters,
+                      start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
   if (const auto* stop = std::get_if<Infeasible>(&path)) {
     return Evaluation::infeasible(violation(*stop, parameters), stop->message);
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  starts_[key_of(point)] = std::get<DigPath>(path).start_x;
+  const PointKey key = key_of(point);
+  starts_[key] = std::get<DigPath>(path).start_x;
+  if (laid_.size() == most_laid) laid_.clear();
+  laid_[key] = std::get<DigPath>(std::move(path));
   return point;
 }
 
-Evaluation DigProblem::simulate(const VectorXd& point) const {
-  const DigPath path = path_of(point);
+/// As it was laid out, or laid out again from its start.
+DigPath DigProblem::taken_path(const VectorXd& point) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (auto kept = laid_.extract(key_of(point))) return std::move(kept.mapped());
+  }
+  return path_of(point);
+}
+
+Evaluation DigProblem::simulate(const VectorXd& point) {
+  const DigPath path = taken_path(point);
   const DigsInEach digs =
       dig_in_each(layout_.machine(), soils_, terrain_, path, options_.objective);
   const DigFailure* failure = nullptr;

@@ -59,11 +59,12 @@ class DigProblem {
   std::vector<const DigParameterInfo*> at_bound(const DigParameters& best) const;
   Eigen::VectorXd point_of(const KnownDig& known) const;
   std::variant<Eigen::VectorXd, Evaluation> lay_out(const Eigen::VectorXd& point);
-  Evaluation simulate(const Eigen::VectorXd& point) const;
+  Evaluation simulate(const Eigen::VectorXd& point);
   double mean_worth(const DigsInEach& digs) const;
   PlannedDig mean_dig(const DigsInEach& digs) const;
   std::optional<double> start_of(const Eigen::VectorXd& point) const;
   DigPath path_of(const Eigen::VectorXd& point) const;
+  DigPath taken_path(const Eigen::VectorXd& point);
   std::string fingerprint() const;
 
   const std::vector<PossibleSoil>& soils_;
@@ -73,6 +74,7 @@ class DigProblem {
   DigLayout layout_;
   mutable std::mutex mutex_;
   std::map<PointKey, double> starts_;  ///< of the drivable paths asked for
+  std::map<PointKey, DigPath> laid_;   ///< those that were not simulated yet
 };
 
 /// The same before work that precedes the search, of search_dig() with the same arguments: of

@@ -52,6 +52,8 @@ HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_
 
 /// Where the blade is in one stretch, and what it cuts there.
 struct BucketResistance::Place {
+  explicit Place(const CutSoil& above) : soil(above) {}
+
   Vector2d tip;
   Vector2d lip;  ///< the ground is cut up to here
   Index col = 0;
@@ -78,22 +80,6 @@ struct BucketResistance::SlidingFace {
   double angle = 0.0;  ///< in the boom plane [rad]
   double rake = 0.0;   ///< against the motion [rad]
   bool packed = false;
-};
-
-/// Terms of the wedge's force that do not depend on the depth of the strip.
-struct BucketResistance::FaceTerms {
-  FaceTerms(const SoilState& state, const EarthmovingFactors& factors, bool packed)
-      : soil(state),
-        n(factors),
-        adhesion(packed ? state.cohesion : state.adhesion),
-        friction(packed ? state.friction_angle : state.tool_friction_angle),
-        shear_at_rest(at_rest(state) * std::tan(state.friction_angle)) {}
-
-  SoilState soil;
-  EarthmovingFactors n;
-  double adhesion;
-  double friction;       ///< on the face [rad]
-  double shear_at_rest;  ///< friction on a vertical plane per vertical stress, at rest [-]
 };
 
 /// In the frame of the motion [N].
@@ -134,17 +120,17 @@ BucketResistance::Column BucketResistance::look_at(Index col) const {
 }
 
 Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double fill) {
-  Place place;
-  place.tip = 0.5 * (s.from + s.to);
+  const Vector2d tip = 0.5 * (s.from + s.to);
+  const Index col = swath_.column(tip.x());
+  Place place(soil_above(col, tip.y()));
+  place.tip = tip;
   place.lip = s.from;
-  place.col = swath_.column(place.tip.x());
+  place.col = col;
   place.motion = s.direction();
   place.climb = std::atan2(place.motion.y(), -place.motion.x());
   place.floor = s.at.phi3 + pi - model_.machine.beta();
-  const Vector2d up = model_.machine.up();
   const double depth = surface_at(place.col) - place.tip.y();
-  place.slope = surface_slope(place.col, depth) - std::atan2(up.x(), up.y());
-  place.soil = soil_above(place.col, place.tip.y());
+  place.slope = surface_slope(place.col, depth) - tilt_;
   // The penetration moves along the floor by definition: no wedge is pushed, the lip is driven in.
   Resistance r =
       s.phase == DigPhase::penetrate ? drive_in(place) : push_wedge(place, fill_in(cavity, fill));
@@ -153,14 +139,13 @@ Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double f
 }
 
 BucketResistance::Fill BucketResistance::fill_in(const Cavity& cavity, double volume) const {
-  const SoilState& loose = model_.loose;
+  const LayerSoil& loose = model_.loose;
   const Cavity::Packed packed = cavity.packed(volume);
   const double section = volume / model_.machine.bucket.width_inside;
   const double depth = section / floor_length();
-  return {
-      volume * loose.unit_weight,
-      section * at_rest(loose) * loose.unit_weight * depth * std::tan(loose.tool_friction_angle),
-      packed.front, packed.centroid.y()};
+  return {volume * loose.unit_weight,
+          section * loose.rest.pressure * loose.unit_weight * depth * loose.tool_tangent,
+          packed.front, packed.centroid.y()};
 }
 
 /// Lip and teeth against the cone index, friction on both sides of the floor and of the side
@@ -190,7 +175,9 @@ Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) {
   const auto face_at = [&](double angle, bool packed) {
     return SlidingFace{angle, std::max({angle, angle + place.climb, edge}), packed};
   };
-  find_strips(place);
+  const StripColumn column = column_at(place);
+  strips_.find_piles(column);
+  strips_.find(column, ground_.cell_size());
   SlidingFace face = face_at(place.floor, false);
   FaceForce force = slide(face, place, fill);
   if (fill.front > 0.0) {
@@ -219,14 +206,8 @@ Resistance BucketResistance::push_wedge(const Place& place, const Fill& fill) {
   return r;
 }
 
-struct BucketResistance::Layers {
-  FaceTerms bank;
-  FaceTerms loose;
-};
-
-BucketResistance::FaceTerms BucketResistance::terms_of(const SoilState& soil,
-                                                       const SlidingFace& face,
-                                                       double slope) const {
+FaceTerms BucketResistance::terms_of(const RestingSoil& soil, const SlidingFace& face,
+                                     double slope) const {
   return {soil, model_.wedges.at(face.rake, slope, soil, face.packed), face.packed};
 }
 
@@ -234,8 +215,8 @@ BucketResistance::FaceTerms BucketResistance::terms_of(const SoilState& soil,
 /// the weight of what lies above.
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Place& place,
                                                     const Fill& fill) {
-  const Layers mean = {terms_of(place.soil.bank, face, place.slope),
-                       terms_of(place.soil.loose, face, place.slope)};
+  const LayerTerms mean = {terms_of(place.soil.bank, face, place.slope),
+                           terms_of(place.soil.loose, face, place.slope)};
   FaceForce force;
   force.fade = std::cos(std::clamp(place.climb, 0.0, 0.5 * pi));
   push_strips(face, place, mean, fill.rise, force);
@@ -262,84 +243,45 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
 
 /// The wedge row by row, each with the soil of its own cell.
 /// @param rise  of the soil in the bucket above the lip [m]
-void BucketResistance::push_strips(const SlidingFace& face, const Place& place, const Layers& mean,
-                                   double rise, FaceForce& force) {
+void BucketResistance::push_strips(const SlidingFace& face, const Place& place,
+                                   const LayerTerms& mean, double rise, FaceForce& force) {
   const bool even = ground_.bank_is_even() && ground_.loose_is_even();
-  const FaceTerms dug = even ? mean.loose : terms_of(model_.loose, face, place.slope);
-  std::vector<Layers> own;  // of the rows, where they differ
-  const auto layers_of = [&](std::size_t i) -> const Layers& { return even ? mean : own[i]; };
-  for (std::size_t i = 0; i < strips_.size(); ++i) {
+  const WedgeTerms wedge = {force.fade, rise, ground_.cell_size(),
+                            even ? mean.loose : terms_of(model_.loose, face, place.slope)};
+  std::vector<LayerTerms> own;  // of the rows, where they differ
+  for (std::size_t i = 0; !even && i < strips_.count(); ++i) {
     const Index row = swath_.first_row() + static_cast<Index>(i);
-    if (!even && strips_[i].empty()) {
-      own.push_back(mean);
-    } else if (!even) {
-      own.push_back({terms_of(ground_.bank_state(row, place.col), face, place.slope),
-                     terms_of(ground_.lying_state(row, place.col), face, place.slope)});
-    }
-    begin_piles(i, layers_of(i));
+    own.push_back(strips_.is_empty(i) ? mean : terms_in(row, face, place));
   }
+  if (even) strips_.begin(0, strips_.count(), mean, wedge.cell);
+  for (std::size_t i = 0; i < own.size(); ++i) strips_.begin(i, 1, own[i], wedge.cell);
   add_piles(place);
-  for (std::size_t i = 0; i < strips_.size(); ++i) {
-    const Strip& strip = strips_[i];
-    if (strip.empty()) continue;
-    const double width = swath_.cover(static_cast<Index>(i)) * ground_.cell_size();
-    const Layers& layers = layers_of(i);
-    const double pile = pile_on_wedge(i, layers);
-    force.push(width * passive_of_bank(strip, pile, layers),
-               width * layers.bank.adhesion * strip.bank, layers.bank);
-    if (strip.loose > 0.0) {
-      force.push(width * passive_of_loose(strip, pile, layers.loose),
-                 width * layers.loose.adhesion * strip.loose, layers.loose);
-    }
-    force.push(width * dug.soil.unit_weight * pile * pile * dug.n.gamma, 0.0, dug);
-    if (force.fade < 1.0) {
-      force.along += width * (1.0 - force.fade) * shearing_force(strip, rise, layers);
-    }
-    force.on_face += width * weight_on_face(strip, layers);
-    force.bank_depth += width * strip.bank;
-    force.loose_depth += width * strip.loose;
-  }
-  force.bank_depth /= model_.machine.bucket.width_outside;
-  force.loose_depth /= model_.machine.bucket.width_outside;
+  StripSums sums;
+  if (even) strips_.push(0, strips_.count(), mean, wedge, sums);
+  for (std::size_t i = 0; i < own.size(); ++i) strips_.push(i, 1, own[i], wedge, sums);
+  force.along = sums.along;
+  force.across = sums.across;
+  force.on_face = sums.on_face;
+  force.bank_depth = sums.bank_depth / model_.machine.bucket.width_outside;
+  force.loose_depth = sums.loose_depth / model_.machine.bucket.width_outside;
 }
 
-/// Of the wedge's part in the bank of one row on the face, per metre of width [N/m].
-/// @param pile  thickness of what was pushed up on it [m]
-double BucketResistance::passive_of_bank(const Strip& strip, double pile,
-                                         const Layers& layers) const {
-  const FaceTerms& t = layers.bank;
-  const double surcharge =
-      model_.loose.unit_weight * pile + layers.loose.soil.unit_weight * strip.loose;
-  return strip.bank * (t.soil.unit_weight * strip.bank * t.n.gamma + t.soil.cohesion * t.n.c +
-                       surcharge * t.n.q + t.adhesion * t.n.ca);
-}
-
-/// Likewise of its part in the loose layer.
-double BucketResistance::passive_of_loose(const Strip& strip, double pile,
-                                          const FaceTerms& t) const {
-  const double surcharge = model_.loose.unit_weight * pile;
-  return strip.loose * (t.soil.unit_weight * strip.loose * t.n.gamma + t.soil.cohesion * t.n.c +
-                        surcharge * t.n.q + t.adhesion * t.n.ca);
-}
-
-/// Weight of the wedge's part over the face, per metre of width [N/m].
-double BucketResistance::weight_on_face(const Strip& strip, const Layers& layers) {
-  const double of_bank = 0.5 * strip.bank * strip.bank * layers.bank.n.cot_rake;
-  const double of_loose = strip.loose * (strip.bank * layers.bank.n.cot_rake +
-                                         0.5 * strip.loose * layers.loose.n.cot_rake);
-  return layers.bank.soil.unit_weight * of_bank + layers.loose.soil.unit_weight * of_loose;
+LayerTerms BucketResistance::terms_in(Index row, const SlidingFace& face,
+                                      const Place& place) const {
+  return {terms_of(RestingSoil(ground_.bank_state(row, place.col)), face, place.slope),
+          terms_of(RestingSoil(ground_.lying_state(row, place.col)), face, place.slope)};
 }
 
 /// On the side planes of the mean wedge; that of the loose layer is also over that of the bank.
 BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean,
-                                                           const Layers& layers) {
+                                                           const LayerTerms& layers) {
   const auto wedge_of = [&](const FaceTerms& t) {
     return CuttingWedge{t.n.rake, t.soil.friction_angle, t.friction, 0.0};
   };
   const auto force = [&](const FaceTerms& t, double depth, double above) {
     const double stuck = t.soil.cohesion + above * t.shear_at_rest;
     const SoilStrength strength = {t.soil.unit_weight, stuck, t.soil.adhesion};
-    return side_plane_force(wedge_of(t), t.n, strength, depth);
+    return side_plane_force(t.n, strength, t.soil.rest, depth);
   };
   SideForces sides;
   const double above = layers.loose.soil.unit_weight * mean.loose_depth;
@@ -358,61 +300,17 @@ BucketResistance::SideForces BucketResistance::side_forces(const FaceForce& mean
   return sides;
 }
 
-/// What is not pushed up is sheared off and lifted to where it lies in the bucket, `rise` above the
-/// lip: against the motion, per metre of width [N/m].
-double BucketResistance::shearing_force(const Strip& strip, double rise,
-                                        const Layers& layers) const {
-  const SoilState& bank = layers.bank.soil;
-  const SoilState& loose = layers.loose.soil;
-  const double above = loose.unit_weight * strip.loose;
-  const double in_bank =
-      bank.cohesion + (above + 0.5 * bank.unit_weight * strip.bank) * layers.bank.shear_at_rest;
-  const double in_loose = loose.cohesion + 0.5 * above * layers.loose.shear_at_rest;
-  const double lifted =
-      bank.unit_weight * strip.bank + above + model_.loose.unit_weight * strip.pile;
-  const double lift = std::max(0.0, rise - 0.5 * (strip.depth() + strip.pile));
-  return strip.bank * in_bank + strip.loose * in_loose + lifted * lift;
-}
-
-void BucketResistance::find_strips(const Place& place) {
-  for (std::size_t i = 0; i < strips_.size(); ++i) {
-    strips_[i] = strip_at(swath_.first_row() + static_cast<Index>(i), place);
-  }
-}
-
-/// In its first cell the wedge of a row has what lies there.
-void BucketResistance::begin_piles(std::size_t i, const Layers& layers) {
-  const Strip& strip = strips_[i];
-  const double ahead =
-      strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
-  const double cells = strip.depth() > 0.0 ? ahead / ground_.cell_size() : 0.0;
-  wedge_cells_[i] = cells;
-  piles_[i] = std::min(1.0, cells) * strip.pile;
-}
-
 /// Adds what lies on the other cells of all wedges.
 void BucketResistance::add_piles(const Place& place) {
-  const double longest = *std::max_element(wedge_cells_.begin(), wedge_cells_.end());
-  const std::size_t count = strips_.size();
-  std::size_t cell = ground_.at(swath_.first_row(), place.col);
-  Index col = place.col - 1;
-  for (double left = longest - 1.0; left > 0.0 && col >= ground_.cells().col_begin; left -= 1.0) {
-    cell -= ground_.column_step();
-    add_pile(count, ground_.looses(cell, count), &ground_.before().loose(swath_.first_row(), col),
-             wedge_cells_.data(), piles_.data());
-    --col;
-  }
-}
-
-/// What was pushed up over the top of the wedge of a row, as an even layer on all of it; what lies
-/// over the face is in the bucket, and payload. Where nothing else is cut, all of it [m].
-double BucketResistance::pile_on_wedge(std::size_t i, const Layers& layers) const {
-  const Strip& strip = strips_[i];
-  if (!(strip.depth() > 0.0)) return strip.pile;
-  const double ahead =
-      strip.bank * layers.bank.n.cot_failure + strip.loose * layers.loose.n.cot_failure;
-  const double over = strip.bank * layers.bank.n.cot_rake + strip.loose * layers.loose.n.cot_rake;
-  return piles_[i] * ground_.cell_size() / (ahead + over);
+  const Index row = swath_.first_row();
+  const Index columns = std::min(static_cast<Index>(std::ceil(strips_.longest() - 1.0)),
+                                 place.col - ground_.cells().col_begin);
+  if (columns <= 0) return;
+  const Eigen::ArrayXXd& lay = ground_.before().loose;
+  const std::size_t next = ground_.at(row, place.col) - ground_.column_step();
+  strips_.add({strips_.count(), ground_.looses(next, strips_.count()), &lay(row, place.col - 1),
+               -static_cast<std::ptrdiff_t>(ground_.column_step()), -lay.rows()},
+              static_cast<std::size_t>(columns));
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
@@ -429,19 +327,21 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     const auto k = static_cast<std::size_t>(along);
     const Vector2d side = cavity.corner(k + 1) - cavity.corner(k);
     const Vector2d point = s.at.tip + cavity.corner(k) + (along - std::floor(along)) * side;
-    if (!(point.x() > s.to.x() && swept_to(point.x(), behind) > point.y() + least_sunk)) continue;
-    const double level = std::min(swept_to(point.x(), behind), surface_between(point.x()));
+    if (!(point.x() > s.to.x())) continue;
+    const double swept = swept_to(point.x(), behind);
+    if (!(swept > point.y() + least_sunk)) continue;
+    const double level = std::min(swept, surface_between(point.x()));
     const double sunk = level - point.y();
     if (!(sunk > least_sunk)) continue;
     const Index col = swath_.column(point.x());
     const CutSoil ground = soil_above(col, point.y());
-    const SoilState& soil = ground.bank_depth > 0.0 ? ground.bank : ground.loose;
+    const LayerSoil& soil = ground.bank_depth > 0.0 ? ground.bank : ground.loose;
     const double pressure =
         std::min(1.0, sunk / footing) * bearing_capacity(soil, ground.overburden(), floor_length());
     const double area = side.norm() * segments / heel_samples * model_.machine.bucket.width_outside;
     const Vector2d inward = Vector2d(-side.y(), side.x()).normalized();
     const double force = pressure * area;
-    r.heel_force += force * (inward - std::tan(soil.tool_friction_angle) * motion);
+    r.heel_force += force * (inward - soil.tool_tangent * motion);
     r.heel_point += force * point;
     if (!(ground.bank_depth > 0.0) && !ground_.loose_is_even()) {
       r.pressed.push_back({col, pressure});
@@ -478,56 +378,47 @@ double BucketResistance::surface_between(double x) {
 
 // ---- Parts of them ------------------------------------------------------------------------------
 
-BucketResistance::Strip BucketResistance::strip_at(Index row, const Place& place) const {
-  const double bank = ground_.before().bank.z(row, place.col) - place.tip.y();
-  const double loose = ground_.lying(row, place.col);
-  const double pile = pile_in(row, place);
-  if (!(bank + loose + pile > 0.0)) return {};
-  return {std::max(0.0, bank), std::min(loose, std::max(0.0, bank + loose)),
-          std::min(pile, bank + loose + pile)};
-}
-
-/// What this dig has laid on a cell that the lip is in or has not reached [m].
-double BucketResistance::pile_in(Index row, const Place& place) const {
-  const double lay = ground_.lying(row, place.col);
-  const double lies = ground_.loose(row, place.col);
-  if (!(lay > 0.0)) return lies;
+StripColumn BucketResistance::column_at(const Place& place) const {
   const HeightMap& map = ground_.before().bank;
+  const Index row = swath_.first_row();
   const double right = map.origin.x() + map.cell_size * static_cast<double>(place.col + 1);
   const double length = std::clamp(right - place.lip.x(), 0.0, map.cell_size);
-  const double passed = length / map.cell_size * swath_.cover(row - swath_.first_row());
-  const double line = place.lip.y() + 0.5 * length * place.motion.y() / place.motion.x();
-  const double left = std::clamp(line - map.z(row, place.col), 0.0, lay);
-  return std::max(0.0, lies - lay + passed * (lay - left));
+  return {place.tip.y(),
+          length / map.cell_size,
+          place.lip.y() + 0.5 * length * place.motion.y() / place.motion.x(),
+          &map.z(row, place.col),
+          &ground_.before().loose(row, place.col),
+          ground_.looses(ground_.at(row, place.col), strips_.count()),
+          swath_.covers()};
 }
 
-double BucketResistance::pile_at(const Place& place) const {
-  return swath_.mean([&](Index row) { return pile_in(row, place); });
+double BucketResistance::pile_at(const Place& place) {
+  const double* piles = strips_.find_piles(column_at(place));
+  return swath_.mean([&](Index row) { return piles[row - swath_.first_row()]; });
 }
 
 CutSoil BucketResistance::soil_above(Index col, double z) {
-  CutSoil cut;
-  cut.bank = ground_.bank_is_even() ? model_.bank : mean_bank(col);
-  cut.loose = ground_.loose_is_even() ? model_.loose : mean_loose(col);
+  CutSoil cut{ground_.bank_is_even() ? model_.bank : mean_bank(col),
+              ground_.loose_is_even() ? model_.loose : mean_loose(col)};
   cut.bank_depth = std::max(0.0, bank_at(col) - z);
   cut.loose_depth = std::max(0.0, surface_at(col) - z - cut.bank_depth);
   return cut;
 }
 
-SoilState BucketResistance::mean_bank(Index col) const {
+LayerSoil BucketResistance::mean_bank(Index col) const {
   const double e = swath_.mean([&](Index row) { return ground_.bank_void_ratio(row, col); });
-  return checked_bank_state(model_.soil,
-                            std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max));
+  return LayerSoil(checked_bank_state(
+      model_.soil, std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max)));
 }
 
 /// Of all its loose soil, or, where none lies, of soil just dug.
-SoilState BucketResistance::mean_loose(Index col) const {
+LayerSoil BucketResistance::mean_loose(Index col) const {
   const Terrain& before = ground_.before();
   const double thickness = swath_.mean([&](Index row) { return before.loose(row, col); });
   if (!(thickness > 0.0)) return model_.loose;
   const double sum = swath_.mean(
       [&](Index row) { return before.loose(row, col) * before.loose_void_ratio(row, col); });
-  return checked_loose_state(model_.soil, sum / thickness);
+  return LayerSoil(checked_loose_state(model_.soil, sum / thickness));
 }
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.
@@ -548,11 +439,11 @@ double BucketResistance::surface_slope(Index col, double depth) {
 /// between teeth follows in soil that they have broken. The cone index holds the friction on its
 /// cone; teeth are other wedges.
 double BucketResistance::penetrating_area(double driven, double depth,
-                                          const SoilState& soil) const {
+                                          const LayerSoil& soil) const {
   const Bucket& bucket = model_.machine.bucket;
   if (!bucket.teeth) return std::min(bucket.edge_thickness, depth) * bucket.width_outside;
   const Teeth& teeth = *bucket.teeth;
-  const double friction = std::tan(soil.tool_friction_angle);
+  const double friction = soil.tool_tangent;
   const double wedge =
       (1.0 + friction / std::tan(0.5 * teeth.angle)) / (1.0 + friction / std::tan(cone_half_angle));
   return std::min(1.0, driven / teeth.length) * wedge * teeth.count * teeth.width *
@@ -563,7 +454,7 @@ double BucketResistance::penetrating_area(double driven, double depth,
 double BucketResistance::driving_force(const CutSoil& cut, double driven) const {
   const Bucket& bucket = model_.machine.bucket;
   const double height = bucket.teeth ? bucket.teeth->thickness : bucket.edge_thickness;
-  return cut.mean_at_point(height, [&](const SoilState& soil) {
+  return cut.mean_at_point(height, [&](const LayerSoil& soil) {
     return cone_index(model_.soil, soil, cut.overburden() / soil.unit_weight) *
            penetrating_area(driven, cut.depth(), soil);
   });
@@ -575,12 +466,10 @@ double BucketResistance::edge_force(const CutSoil& cut, double climb) const {
   if (!(cut.depth() > 0.0)) return 0.0;
   const Bucket& bucket = model_.machine.bucket;
   const double thickness = std::min(bucket.edge_thickness, cut.depth());
-  const double pressure = cut.mean_at_point(thickness, [&](const SoilState& soil) {
-    const double phi = soil.friction_angle;
-    const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
-    return (0.5 * thickness * soil.unit_weight + soil.cohesion / std::tan(phi) +
-            cut.overburden() * active) *
-           blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle);
+  const double pressure = cut.mean_at_point(thickness, [&](const LayerSoil& soil) {
+    return (0.5 * thickness * soil.unit_weight + soil.cohesion / soil.rest.tangent +
+            cut.overburden() * soil.active) *
+           soil.blunt_edge;
   });
   const double yielding = pressure * thickness * bucket.width_outside;
   const double plunge = std::max(0.0, -std::sin(climb));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,6 +17,7 @@
 #include "simulation/resistance.hpp"
 #include "simulation/soil_wedges.hpp"
 #include "simulation/swath.hpp"
+#include "simulation/wedge_strips.hpp"
 #include "soil/cut_soil.hpp"
 
 namespace excavplan {
@@ -27,8 +29,8 @@ struct HeightMapModel {
   Machine machine;
   SoilKind soil;
   double density_percent;
-  SoilState bank;
-  SoilState loose;
+  LayerSoil bank;
+  LayerSoil loose;
   HoldingSlopes slopes;
   SoilWedges wedges;
 };
@@ -42,11 +44,10 @@ class BucketResistance {
         ground_(ground),
         swath_(swath),
         path_(path),
+        tilt_(std::atan2(model.machine.up().x(), model.machine.up().y())),
         first_col_(ground.cells().col_begin),
         columns_(static_cast<std::size_t>(ground.cells().cols())),
-        strips_(static_cast<std::size_t>(swath.rows())),
-        wedge_cells_(strips_.size()),
-        piles_(strips_.size()) {}
+        strips_(static_cast<std::size_t>(swath.rows())) {}
 
   /// `cavity` is turned as the bucket stands, half-way of the stretch, and holds `fill` [m^3].
   Resistance at(const Stretch& stretch, const Cavity& cavity, double fill);
@@ -62,17 +63,6 @@ class BucketResistance {
   struct Fill;
   struct SlidingFace;
   struct FaceForce;
-  struct FaceTerms;
-  struct Layers;
-  /// Ground above the tip in one row, and what this dig has pushed up on it [m].
-  struct Strip {
-    double bank = 0.0;
-    double loose = 0.0;  ///< that lay there before the dig
-    double pile = 0.0;
-
-    double depth() const { return bank + loose; }
-    bool empty() const { return depth() + pile <= 0.0; }
-  };
   /// Top of the bank in a column, and of what lay on it, mean over the width, before the dig [m].
   struct Column {
     bool seen = false;
@@ -90,31 +80,24 @@ class BucketResistance {
   Fill fill_in(const Cavity& cavity, double volume) const;
   Resistance drive_in(const Place& place);
   Resistance push_wedge(const Place& place, const Fill& fill);
-  FaceTerms terms_of(const SoilState& soil, const SlidingFace& face, double slope) const;
+  FaceTerms terms_of(const RestingSoil& soil, const SlidingFace& face, double slope) const;
+  LayerTerms terms_in(Eigen::Index row, const SlidingFace& face, const Place& place) const;
   FaceForce slide(const SlidingFace& face, const Place& place, const Fill& fill);
-  void push_strips(const SlidingFace& face, const Place& place, const Layers& mean, double rise,
+  void push_strips(const SlidingFace& face, const Place& place, const LayerTerms& mean, double rise,
                    FaceForce& force);
   void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance);
   double swept_to(double x, std::size_t& pose) const;
   double surface_between(double x);
 
-  Strip strip_at(Eigen::Index row, const Place& place) const;
-  double pile_in(Eigen::Index row, const Place& place) const;
-  double pile_at(const Place& place) const;
-  void find_strips(const Place& place);
-  void begin_piles(std::size_t i, const Layers& layers);
+  StripColumn column_at(const Place& place) const;
+  double pile_at(const Place& place);
   void add_piles(const Place& place);
-  double pile_on_wedge(std::size_t i, const Layers& layers) const;
-  double passive_of_bank(const Strip& strip, double pile, const Layers& layers) const;
-  double passive_of_loose(const Strip& strip, double pile, const FaceTerms& terms) const;
-  static double weight_on_face(const Strip& strip, const Layers& layers);
-  static SideForces side_forces(const FaceForce& mean, const Layers& layers);
-  double shearing_force(const Strip& strip, double rise, const Layers& layers) const;
+  static SideForces side_forces(const FaceForce& mean, const LayerTerms& layers);
   CutSoil soil_above(Eigen::Index col, double z);
-  SoilState mean_bank(Eigen::Index col) const;
-  SoilState mean_loose(Eigen::Index col) const;
+  LayerSoil mean_bank(Eigen::Index col) const;
+  LayerSoil mean_loose(Eigen::Index col) const;
   double surface_slope(Eigen::Index col, double depth);
-  double penetrating_area(double driven, double depth, const SoilState& soil) const;
+  double penetrating_area(double driven, double depth, const LayerSoil& soil) const;
   double driving_force(const CutSoil& cut, double driven) const;
   double edge_force(const CutSoil& cut, double climb) const;
   double side_plate_area(double depth, double floor) const;
@@ -123,12 +106,11 @@ class BucketResistance {
   const GroundWindow& ground_;
   const Swath& swath_;
   const DigPath& path_;
+  double tilt_;  ///< of gravity against the machine, in the boom plane [rad]
   Eigen::Index first_col_;
-  std::vector<Column> columns_;      ///< from first_col_ on
-  Column beyond_;                    ///< one that is not among them
-  std::vector<Strip> strips_;        ///< of the rows of the swath, at the stretch
-  std::vector<double> wedge_cells_;  ///< length of the wedge ahead that is left, in cells
-  std::vector<double> piles_;        ///< on the wedge, so far [m]
+  std::vector<Column> columns_;  ///< from first_col_ on
+  Column beyond_;                ///< one that is not among them
+  WedgeStrips strips_;           ///< of the rows of the swath, at the stretch
 };
 
 }  // namespace excavplan

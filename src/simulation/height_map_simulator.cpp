@@ -42,7 +42,8 @@ class Dig {
         path_(path),
         options_(options),
         swath_(terrain.bank, model.machine.bucket.width_outside),
-        ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path)),
+        ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path),
+                comes_to_rest()),
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
         pile_(ground_, swath_, model.machine.bucket.width_outside, model.slopes.heap),
@@ -61,7 +62,8 @@ class Dig {
       result.given_up = result.energy.total > energy_worth;
     }
     come_clear(poses[reached].bucket, poses.back());
-    if (!options_.worth_alone) come_to_rest();
+    if (comes_to_rest()) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
+    if (!options_.worth_alone) sum_loose_soil(account_.result.soil);
     account_.close(ground_, fill_, model_.slopes.heap);
     return std::move(result);
   }
@@ -285,10 +287,7 @@ class Dig {
     spill(level_ahead({at.x, at.z}), [&](double) { return cavity_.capacity(0.0, slopes); });
   }
 
-  void come_to_rest() {
-    if (options_.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
-    sum_loose_soil(account_.result.soil);
-  }
+  bool comes_to_rest() const { return options_.settle && !options_.worth_alone; }
 
   /// Loose soil that was gained where the ground was cut, and elsewhere.
   void sum_loose_soil(SoilLedger& ledger) const {

@@ -34,28 +34,28 @@ bool PileAhead::look(double top) {
   const Index lip = swath_.nearest_column(lip_x_);
   for (double reach = foot_ + 2.0 * rim;; reach *= 1.5) {
     runs_.clear();
-    looked_at_ = 0;
-    foot_ = 0.0;
+    partly_ = {};
+    kept_ = 0;
+    foot_square_ = 0.0;
     const auto around = static_cast<Index>(std::ceil(reach / cell));
     const auto ahead = static_cast<Index>(std::ceil(level_length_ / cell));
     const CellBlock level = {swath_.first_row(), swath_.end_row(), lip - ahead, lip + 1};
     seen_ = ground_.widened(level, around);
     ground_.cover(seen_);
-    make_room();
-    across_.clear();
-    for (Index row = seen_.row_begin; row < seen_.row_end; ++row) {
-      across_.push_back(std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_));
-    }
+    find_rows();
     for (Index col = seen_.col_begin; col < seen_.col_end; ++col) look_at_column(col, reach);
+    foot_ = std::sqrt(foot_square_);
     if (foot_ + rim < reach || reach > farthest) return true;
   }
 }
 
-void PileAhead::make_room() {
-  const auto all = static_cast<std::size_t>(seen_.rows() * seen_.cols());
-  if (bases_.size() >= all) return;
-  bases_.resize(all);
-  distances_.resize(all);
+void PileAhead::find_rows() {
+  const auto all = static_cast<std::size_t>(seen_.rows() * seen_.cols()) + most_cells_of_a_line;
+  if (bases_.size() < all) bases_.resize(all);
+  across_.clear();
+  for (Index row = seen_.row_begin; row < seen_.row_end; ++row) {
+    across_.push_back(std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_));
+  }
 }
 
 void PileAhead::look_at_column(Index col, double reach) {
@@ -68,72 +68,64 @@ void PileAhead::look_at_column(Index col, double reach) {
   const double along = behind ? centre - lip_x_ : std::max(0.0, lip_x_ - centre - level_length_);
   if (along > reach) return;
   const double beside = along > 0.0 ? std::sqrt(reach * reach - along * along) : reach;
-  const double rows_beside = beside / map.cell_size;
-  auto rows = static_cast<Index>(rows_beside);
-  if (static_cast<double>(rows) < rows_beside) ++rows;
-  Line line;
-  line.first = std::max(seen_.row_begin, swath_.first_row() - rows);
-  line.end = std::min(seen_.row_end, swath_.end_row() + rows);
-  line.cell = ground_.at(line.first, col);
-  line.bases = looked_at_;
-  const auto count = static_cast<std::size_t>(line.end - line.first);
-  looked_at_ += count;
-  const std::size_t covered =
-      find_bases({along, reach, slope_, seen_to_, count, ground_.heights(line.cell, count),
-                  across_.data() + (line.first - seen_.row_begin)},
-                 distances_.data() + line.bases, bases_.data() + line.bases);
+  const auto rows = static_cast<Index>(beside / map.cell_size) + 1;
+  const Index first = std::max(seen_.row_begin, swath_.first_row() - rows);
+  const Index end = std::min(seen_.row_end, swath_.end_row() + rows);
+  const Column column = {col, along, reach};
   const double passed = lip_x_ - left;
-  keep(line, covered, behind ? 0.0 : passed < map.cell_size ? passed / map.cell_size : 1.0);
+  if (!behind && passed >= map.cell_size) {
+    look_at_rows(column, first, end, 1.0);
+    return;
+  }
+  look_at_rows(column, first, swath_.first_row(), 1.0);
+  if (!behind) look_at_rows(column, swath_.first_row(), swath_.end_row(), passed / map.cell_size);
+  look_at_rows(column, swath_.end_row(), end, 1.0);
 }
 
-/// Keeps what the pile may cover of a line.
+/// Keeps what the pile may cover of the rows.
 ///
-/// @param covered  number of those cells
-/// @param share_of_swath  of each cell before the bucket that is ahead of the lip
-void PileAhead::keep(const Line& line, std::size_t covered, double share_of_swath) {
-  if (covered == 0) return;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  const double* bases = bases_.data() + line.bases - line.first;
-  Index begin = line.first;
-  Index last = line.end - 1;
-  while (!(bases[last] < none)) --last;
-  while (covered > 0) {
-    while (!(bases[begin] < none)) ++begin;
-    Index end = last + 1;
-    if (end - begin > static_cast<Index>(covered)) {  // there are gaps
-      for (end = begin + 1; bases[end] < none;) ++end;
-    }
-    covered -= static_cast<std::size_t>(end - begin);
-    const Index swath = std::clamp(swath_.first_row(), begin, end);
-    const Index beyond = std::clamp(swath_.end_row(), begin, end);
-    keep_run(line, begin, swath, 1.0);
-    keep_run(line, swath, beyond, share_of_swath);
-    keep_run(line, beyond, end, 1.0);
-    begin = end;
+/// @param share  of each cell that is ahead of the lip
+void PileAhead::look_at_rows(const Column& column, Index first, Index end, double share) {
+  const auto most = static_cast<Index>(most_cells_of_a_line);
+  for (Index begin = first; begin < end; begin += most) {
+    const auto count = static_cast<std::size_t>(std::min(end - begin, most));
+    const std::size_t cell = ground_.at(begin, column.col);
+    double* bases = bases_.data() + kept_;
+    const CoveredCells covered =
+        find_bases({column.along, column.reach, slope_, seen_to_, count,
+                    ground_.heights(cell, count), across_.data() + (begin - seen_.row_begin)},
+                   bases);
+    if (covered.first == covered.end) continue;
+    std::copy(bases + covered.first, bases + covered.end, bases);
+    // Across the pile distances fall and rise: the farthest cell is one of the ends.
+    foot_square_ =
+        std::max({foot_square_, square(column, begin + static_cast<Index>(covered.first)),
+                  square(column, begin + static_cast<Index>(covered.end) - 1)});
+    Run& run = runs_.emplace_back();  // written in place: a copy waits for each of its members
+    run.cell = cell + covered.first;
+    run.bases = kept_;
+    run.count = covered.end - covered.first;
+    run.share = share;
+    kept_ += run.count;
+    if (share < 1.0) partly_ = run;
   }
 }
 
-/// Across the pile distances fall and rise: the farthest cell is one of the ends.
-void PileAhead::keep_run(const Line& line, Index begin, Index end, double share) {
-  if (begin == end || !(share > 0.0)) return;
-  const auto from = static_cast<std::size_t>(begin - line.first);
-  const auto count = static_cast<std::size_t>(end - begin);
-  const double* distances = distances_.data() + line.bases + from;
-  foot_ = std::max({foot_, distances[0], distances[count - 1]});
-  Run& run = runs_.emplace_back();  // written in place: a copy waits for each of its members
-  run.cell = line.cell + from;
-  run.bases = line.bases + from;
-  run.count = count;
-  run.share = share;
+/// Of the distance from the level top to a cell [m^2].
+double PileAhead::square(const Column& column, Index row) const {
+  const double across = across_[static_cast<std::size_t>(row - seen_.row_begin)];
+  return column.along * column.along + across * across;
 }
 
 double PileAhead::volume(double top) const {
+  const double* bases = bases_.data();
+  const std::size_t end = partly_.bases + partly_.count;
   double volume = 0.0;
-  for (const Run& run : runs_) {
-    const double* bases = bases_.data() + run.bases;
-    const double share = run.share;
-    for (std::size_t i = 0; i < run.count; ++i) volume += share * std::max(0.0, top - bases[i]);
+  for (std::size_t i = 0; i < partly_.bases; ++i) volume += std::max(0.0, top - bases[i]);
+  for (std::size_t i = partly_.bases; i < end; ++i) {
+    volume += partly_.share * std::max(0.0, top - bases[i]);
   }
+  for (std::size_t i = end; i < kept_; ++i) volume += std::max(0.0, top - bases[i]);
   return volume * (ground_.cell_size() * ground_.cell_size());
 }
 
@@ -148,15 +140,7 @@ double PileAhead::area(double top) const {
 
 CellBlock PileAhead::lay(double top, double share) {
   for (const Run& run : runs_) {
-    const double* bases = bases_.data() + run.bases;
-    std::size_t i = 0;
-    while (i < run.count) {
-      while (i < run.count && !(top > bases[i])) ++i;
-      const std::size_t begin = i;
-      while (i < run.count && top > bases[i]) ++i;
-      if (i == begin) break;
-      ground_.raise_to(top, share * run.share, run.cell + begin, i - begin, bases + begin);
-    }
+    ground_.raise_to({top, share * run.share}, run.cell, run.count, bases_.data() + run.bases);
   }
   return seen_;
 }

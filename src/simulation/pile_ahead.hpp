@@ -35,7 +35,8 @@ class PileAhead {
   CellBlock lay(double top, double share);
 
  private:
-  struct ColumnAhead {
+  /// Where a column of cells is.
+  struct Column {
     Eigen::Index col = 0;
     double along = 0.0;  ///< from the level top in the direction of travel [m]
     double reach = 0.0;  ///< from the level top, up to which soil is sought [m]
@@ -48,17 +49,10 @@ class PileAhead {
     std::size_t count = 0;
     double share = 0.0;
   };
-  /// The rows of a column that were looked at.
-  struct Line {
-    Eigen::Index first = 0;
-    Eigen::Index end = 0;
-    std::size_t cell = 0;   ///< of the first row
-    std::size_t bases = 0;  ///< where theirs begin
-  };
-  void make_room();
+  void find_rows();
   void look_at_column(Eigen::Index col, double reach);
-  void keep(const Line& line, std::size_t covered, double share_of_swath);
-  void keep_run(const Line& line, Eigen::Index begin, Eigen::Index end, double share);
+  void look_at_rows(const Column& column, Eigen::Index first, Eigen::Index end, double share);
+  double square(const Column& column, Eigen::Index row) const;
 
   GroundWindow& ground_;
   const Swath& swath_;
@@ -68,14 +62,15 @@ class PileAhead {
   double level_length_ = 0.0;
   double seen_to_ = 0.0;  ///< top for which all places are known
   double foot_ = 0.0;     ///< of that pile, from its level top [m]
+  double foot_square_ = 0.0;
   CellBlock seen_;
   std::vector<double> across_;  ///< of the rows seen, beyond the sides of the bucket [m]
   std::vector<Run> runs_;
-  // Of all cells looked at, column by column: the level of the pile's top from which on they are
-  // covered, and their distance from the level top. Rooms that only grow.
+  /// Of all cells of the runs, one after another: the level of the pile's top from which on they
+  /// are covered. Room that only grows.
   std::vector<double> bases_;
-  std::vector<double> distances_;
-  std::size_t looked_at_ = 0;
+  std::size_t kept_ = 0;  ///< of bases_
+  Run partly_;            ///< the run that the lip is in: of all others the share is 1
 };
 
 }  // namespace excavplan

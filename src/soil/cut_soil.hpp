@@ -5,13 +5,30 @@
 #include <algorithm>
 
 #include <excavplan/soil/soil.hpp>
+#include "soil/earthmoving.hpp"
 
 namespace excavplan {
 
+/// A state of soil, and what forces take of it whatever the depth.
+struct RestingSoil : SoilState {
+  explicit RestingSoil(const SoilState& state);
+
+  SoilAtRest rest;
+};
+/// Likewise of what forces on a bucket take.
+struct LayerSoil : RestingSoil {
+  explicit LayerSoil(const SoilState& state);
+
+  double tool_tangent;  ///< of the tool friction angle
+  double active;        ///< coefficient of the active pressure (Rankine)
+  double blunt_edge;    ///< blunt_edge_ratio() of an upright edge
+  double bearing;       ///< N_q of a footing (Prandtl, Reissner)
+};
+
 /// The ground above a point: loose soil on the bank, each with its own state, mean over the width.
 struct CutSoil {
-  SoilState bank;
-  SoilState loose;
+  LayerSoil bank;
+  LayerSoil loose;
   double bank_depth = 0.0;   ///< down to the point; 0 if it is in the loose layer [m]
   double loose_depth = 0.0;  ///< of the loose layer, down to the point at most [m]
 
@@ -35,11 +52,8 @@ struct CutSoil {
   double plate_friction() const;
 };
 
-/// Coefficient of the pressure at rest (Jaky 1944).
-double at_rest(const SoilState& soil);
-
 /// Bearing capacity of a strip footing with this stress beside it (Prandtl, Reissner; N_gamma of
 /// Vesic 1973) [Pa].
-double bearing_capacity(const SoilState& soil, double overburden, double width);
+double bearing_capacity(const LayerSoil& soil, double overburden, double width);
 
 }  // namespace excavplan

@@ -108,11 +108,19 @@ EarthmovingFactors crescent_factors(const CuttingWedge& wedge, double failure, d
   return n;
 }
 
+SoilAtRest::SoilAtRest(double friction)
+    : pressure(1.0 - std::sin(friction)), tangent(std::tan(friction)) {}
+
+double side_plane_force(const EarthmovingFactors& factors, const SoilStrength& strength,
+                        const SoilAtRest& rest, double depth) {
+  const double area = 0.5 * depth * depth * (factors.cot_rake + factors.cot_failure);
+  const double pressure = rest.pressure * strength.unit_weight * depth / 3.0;
+  return 2.0 * area * (strength.cohesion + pressure * rest.tangent);
+}
+
 double side_plane_force(const CuttingWedge& wedge, const EarthmovingFactors& factors,
                         const SoilStrength& strength, double depth) {
-  const double area = 0.5 * depth * depth * (cot(wedge.rake) + cot(factors.failure));
-  const double pressure = (1.0 - std::sin(wedge.friction)) * strength.unit_weight * depth / 3.0;
-  return 2.0 * area * (strength.cohesion + pressure * std::tan(wedge.friction));
+  return side_plane_force(factors, strength, SoilAtRest(wedge.friction), depth);
 }
 
 double side_plane_share(const CuttingWedge& wedge, const EarthmovingFactors& factors) {

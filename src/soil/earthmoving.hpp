@@ -60,8 +60,19 @@ struct SoilStrength {
   double adhesion = 0.0;     ///< [Pa]
 };
 
+/// Of soil that does not yield sideways.
+struct SoilAtRest {
+  explicit SoilAtRest(double friction);
+
+  double pressure;  ///< sideways over downwards, 1 - sin(friction) (Jaky 1944) [-]
+  double tangent;   ///< of the friction angle
+};
+
 /// Cohesion and friction on the two vertical side planes of a wedge of this depth [m], to be added
 /// to P times side_plane_share() [N] (Perumpral type; `docs/methods.md#earthmoving`).
+/// @param factors  of earthmoving_factors()
+double side_plane_force(const EarthmovingFactors& factors, const SoilStrength& strength,
+                        const SoilAtRest& rest, double depth);
 double side_plane_force(const CuttingWedge& wedge, const EarthmovingFactors& factors,
                         const SoilStrength& strength, double depth);
 
