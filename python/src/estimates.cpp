@@ -125,7 +125,8 @@ void bind_views(EstimateClass& estimate) {
           "report",
           [](const E& of, const File& file) {
             write_bytes(file, call([&] {
-                          return report_page(of, of.job, of.cost, of.machine, of.soil, of.design);
+                          return report_page(of, of.job, of.cost,
+                                             {of.design, of.soil.name, of.machine.name});
                         }));
           },
           arg("file"), "Writes a page to print, as plan-site estimate --report.")

@@ -19,13 +19,6 @@ namespace excavplan {
 /// A job that was played against hidden truth.
 Report trial_report(const JobTrial& trial, ReportJob job);
 
-/// What an estimate is about.
-struct EstimatedJob {
-  std::string design;   ///< "trench 10x0.7x1.2m"; may be empty
-  std::string soil;     ///< its name
-  std::string machine;  ///< its name
-};
-
 /// A job before its first bucket: a sheet to print, without ground.
 Report estimate_report(const JobEstimate& estimate, const std::optional<JobCost>& cost,
                        const EstimatedJob& job);

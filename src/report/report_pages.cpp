@@ -55,10 +55,9 @@ std::string report_page(const Machine& machine, const DigPlan& plan, const PlanS
 }
 
 std::string report_page(const JobEstimate& estimate, const JobOutline& job,
-                        const std::optional<JobCost>& cost, const Machine& machine,
-                        const SoilKind& soil, const std::string& design) {
+                        const std::optional<JobCost>& cost, const EstimatedJob& about) {
   return html_page(
-      estimate_report(estimate, cost, {design, soil.name, machine.name}),
+      estimate_report(estimate, cost, about),
       judged(run_of(job_estimate_json(estimate, job, cost), {}), estimate.trustworthy()));
 }
 

@@ -78,6 +78,13 @@ struct JobEstimate {
   bool trustworthy() const { return unlike.empty(); }  ///< whether played jobs were like this one
 };
 
+/// What an estimate is about, in words.
+struct EstimatedJob {
+  std::string design;   ///< "trench 10x0.7x1.2m"; may be empty
+  std::string soil;     ///< its name
+  std::string machine;  ///< its name
+};
+
 /// What estimates rest on.
 struct EstimateBasis {
   FuelModel fuel;                ///< of the machine's engine

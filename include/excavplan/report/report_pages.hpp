@@ -31,10 +31,9 @@ std::string report_page(const Machine& machine, const DigScene& scene);
 std::string report_page(const Machine& machine, const DigPlan& plan, const PlanSite& site,
                         const GroundDensity& density, const DigObjective& objective);
 
-/// A job before its first bucket, a sheet to print. @param design  in words; may be empty
+/// A job before its first bucket, a sheet to print.
 std::string report_page(const JobEstimate& estimate, const JobOutline& job,
-                        const std::optional<JobCost>& cost, const Machine& machine,
-                        const SoilKind& soil, const std::string& design);
+                        const std::optional<JobCost>& cost, const EstimatedJob& about);
 
 /// A job as far as it has come.
 std::string report_page(const JobProgress& progress, const JobHistory& history,
