@@ -21,7 +21,6 @@ constexpr double end_wall = 0.67;       // of that reach to the far end: nearer 
                                         // little for a steep cut
 constexpr double end_of_wide = 0.74;    // likewise of a wide design: its face leans back, and takes
                                         // up what is within reach of a nearer place
-constexpr double far_end = 0.8;         // that slopes where no place before it cuts it steeply [m]
 constexpr double overlap = 0.25;        // of what is dug from two places in succession [m]
 constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.03;     // to the ends of the design, half a cell at least [m]
@@ -192,13 +191,11 @@ WorkRange work_range(const JobFrame& frame, const Machine& machine, double along
   return range;
 }
 
-std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings,
-                                    bool far_end_last) {
+std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
   const Machine& machine = settings.site.machine;
   const auto lanes_of_all = lanes_of(frame, machine.bucket.width_outside);
   const bool is_wide = wants_benches(frame, lanes_of_all);
-  const double to_end = is_wide ? end_of_wide : far_end_last ? farthest_work : end_wall;
-  const double first = frame.far - at_reach(machine, to_end);
+  const double first = frame.far - at_reach(machine, is_wide ? end_of_wide : end_wall);
   const double last = last_of(frame, machine);
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
@@ -214,7 +211,6 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
       stations.push_back(station_at(frame, along, lanes));
       stations.back().is_wide = is_wide;
-      if (far_end_last) stations.back().shapes_to = frame.far - far_end;
       if (!is_wide && groups.size() > 1 && i < more)
         stations.back().shapes_from = along + step + farthest_of(machine) - overlap;
     }

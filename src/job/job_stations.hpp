@@ -29,7 +29,7 @@ struct JobStation {
   bool is_beyond = false;           ///< the far end: all of it is along the reversed() line
   bool is_again = false;            ///< only if the shape of what it reaches is not right
   double shapes_from = -1e9;        ///< along the line; what is nearer, later places shape [m]
-  double shapes_to = 1e9;           ///< likewise; what is farther, a place beyond does [m]
+  double shapes_to = 1e9;           ///< likewise; what is farther, a place beyond the end does [m]
 
   bool is_lookout() const { return lanes.empty(); }  ///< it only scans from there
 };
@@ -42,9 +42,7 @@ JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrai
 /// The places of a job in their order, from the far end of the design to beyond its near end. From
 /// each one all that is within reach ahead is dug; where the design is wider than the lanes of one
 /// place, the machine moves aside before it goes back.
-/// @param far_end_last  a place beyond is to take what slopes there: no steep cut is needed
-std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings,
-                                    bool far_end_last = false);
+std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
 
 /// The places beyond the far end, from which it can be dug as the near end is from the last ones: a
 /// bucket that comes up along a wall leaves it steep in soil of any strength, one that goes down

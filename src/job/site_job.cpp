@@ -42,6 +42,7 @@ constexpr int most_passes = 16;              // along the floor from one station
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
+constexpr double far_end = 0.8;              // that may slope until it is dug from beyond [m]
 constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
 constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
@@ -141,10 +142,9 @@ struct SiteJob::State {
     frame = work_frame(settings, map, first);
     const std::vector<JobStation> beyond = places_beyond();
     stations = stations_of(frame, settings);
-    if (is_one_group(stations)) {
-      if (!beyond.empty()) stations = stations_of(frame, settings, true);
+    can_leave_end = !beyond.empty() && is_one_group(stations);
+    if (is_one_group(stations))
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
-    }
     const JobStation last = stations.back();
     stations.insert(stations.end(), beyond.begin(), beyond.end());
     const JobStation lookout;
@@ -165,6 +165,15 @@ struct SiteJob::State {
 
   JobFrame frame_at(const JobStation& station) const {
     return station.is_beyond ? reversed(frame) : frame;
+  }
+
+  /// The present station. Where the soil has proved hard the far end is left to a place beyond:
+  /// steep cuts down its wall stall.
+  JobStation here() const {
+    JobStation station = stations[record.station];
+    if (can_leave_end && !station.is_beyond && record.progress.stalls > 0)
+      station.shapes_to = frame.far - far_end;
+    return station;
   }
 
   /// From which the far end of an upright design can be dug.
@@ -242,6 +251,7 @@ struct SiteJob::State {
   Eigen::ArrayXXd design;  ///< JobMap::target as told
   JobFrame frame;
   std::vector<JobStation> stations;
+  bool can_leave_end = false;  ///< to a place beyond
   JobRecord record;
   std::optional<JobLog> log;
 };
@@ -261,7 +271,7 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   const JobFrame line = frame_at(stations[record.station]);
   const Eigen::Vector2d at = line.of({straight.x, straight.y});
   StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
-  task.lines = work_lines(line, stations[record.station], settings.site.machine, at, finishing);
+  task.lines = work_lines(line, here(), settings.site.machine, at, finishing);
   task.may_risk = record.progress.stalls == 0;
   task.finishing = finishing;
   task.is_wide = stations[record.station].is_wide;
@@ -414,7 +424,7 @@ BasePose SiteJob::State::base_of(const JobStation& station) const {
 /// The cells that count and are dug from there.
 template <typename Visit>
 void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const {
-  const JobStation& station = stations[record.station];
+  const JobStation station = here();
   const JobFrame line = frame_at(station);
   const Eigen::Vector2d at = line.of({base.x, base.y});
   const WorkRange range = work_range(line, settings.site.machine, at.x());

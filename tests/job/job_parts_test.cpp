@@ -232,23 +232,21 @@ TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
   }
 }
 
-TEST(JobStations, WhereAPlaceBeyondTakesTheFarEndTheFirstReachesFartherAndCutsNoWall) {
+TEST(JobStations, WhatAPlaceBeyondShapesIsNoWallAndTakesNoPasses) {
   const HandMadeJob job;
   const Machine& machine = job.settings.site.machine;
   const JobFrame frame = job.frame();
-  const JobStation steep = stations_of(frame, job.settings).front();
-  const JobStation first = stations_of(frame, job.settings, true).front();
-  const auto far_of = [&](const JobStation& station, bool finishing) {
-    const Eigen::Vector2d at(station.along, station.beside);
-    const auto lines = work_lines(frame, station, machine, at, finishing);
-    EXPECT_EQ(lines.front().ends_at_wall, &station == &steep);
-    return station.along + lines.front().far;
+  JobStation station = stations_of(frame, job.settings).front();
+  const Eigen::Vector2d at(station.along, station.beside);
+  const auto far_of = [&](bool finishing) {
+    return station.along + work_lines(frame, station, machine, at, finishing).front().far;
   };
-  EXPECT_LT(first.along, steep.along - 0.5);
-  EXPECT_NEAR(far_of(first, false), far_of(steep, false), 1e-9) << "to the end";
-  EXPECT_NEAR(far_of(steep, true), far_of(steep, false), 1e-9);
-  EXPECT_NEAR(far_of(first, true), first.shapes_to, 1e-9) << "passes end before the slope";
-  EXPECT_LT(first.shapes_to, frame.far - 0.5);
+  EXPECT_TRUE(work_lines(frame, station, machine, at, false).front().ends_at_wall);
+  const double end = far_of(true);
+  station.shapes_to = end - 0.8;
+  EXPECT_FALSE(work_lines(frame, station, machine, at, false).front().ends_at_wall);
+  EXPECT_NEAR(far_of(false), end, 1e-9);
+  EXPECT_NEAR(far_of(true), end - 0.8, 1e-9);
 }
 
 /// A cut along x with a face to its left, between two places for soil, and the machine at its foot.
