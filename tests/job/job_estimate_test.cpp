@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -147,10 +149,12 @@ std::vector<PlayedRow> played_rows() {
   return rows;
 }
 
+/// Of six intervals of 95 % more than one misses in 3 of 100 cases.
 TEST(JobEstimate, ThatOfFivePlayedJobsHoldsTheSixth) {
   const std::vector<PlayedRow> rows = played_rows();
   const EstimateBasis all = basis();
   ASSERT_EQ(rows.size(), all.played.jobs.size());
+  std::map<std::string, std::set<std::size_t>> missed;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const PlayedRow& row = rows[i];
     const double density = all.played.jobs[i].density_percent;
@@ -161,12 +165,12 @@ TEST(JobEstimate, ThatOfFivePlayedJobsHoldsTheSixth) {
       const JobEstimate found =
           estimate_job(zx120(), soil(row.soil), trench("15x1x0.5", told), others);
       EXPECT_TRUE(found.trustworthy()) << found.unlike[0];
-      EXPECT_TRUE(holds(found.digs, row.digs)) << i << ' ' << found.digs.value << ' ' << row.digs;
-      EXPECT_TRUE(holds(found.time, row.time)) << i << ' ' << found.time.value << ' ' << row.time;
-      EXPECT_TRUE(holds(found.energy, row.energy))
-          << i << ' ' << found.energy.value << ' ' << row.energy;
+      if (!holds(found.digs, row.digs)) missed["digs"].insert(i);
+      if (!holds(found.time, row.time)) missed["time"].insert(i);
+      if (!holds(found.energy, row.energy)) missed["energy"].insert(i);
     }
   }
+  for (const auto& [figure, jobs] : missed) EXPECT_LE(jobs.size(), 1U) << figure;
 }
 
 TEST(JobEstimate, RefusesWhatItCannotUse) {
