@@ -20,6 +20,16 @@ struct Ground {
   const double* pile;
 };
 
+/// Where so many strips are to be found, from the soil in their column.
+struct FoundGround {
+  std::size_t count;
+  const double* in_column;
+  double* width;
+  double* bank;
+  double* loose;
+  double* pile;
+};
+
 EXCAVPLAN_FOR_EACH_PROCESSOR
 void piles_in(const StripColumn& column, std::size_t count, double* __restrict pile) {
   const double* __restrict bank = column.bank;
@@ -38,9 +48,13 @@ void piles_in(const StripColumn& column, std::size_t count, double* __restrict p
 }
 
 EXCAVPLAN_FOR_EACH_PROCESSOR
-void strips_in(const StripColumn& column, double cell, std::size_t count,
-               const double* __restrict in_column, double* __restrict width,
-               double* __restrict bank, double* __restrict loose, double* __restrict pile) {
+void strips_in(const StripColumn& column, double cell, const FoundGround& found) {
+  const double* __restrict in_column = found.in_column;
+  double* __restrict width = found.width;
+  double* __restrict bank = found.bank;
+  double* __restrict loose = found.loose;
+  double* __restrict pile = found.pile;
+  const std::size_t count = found.count;
   const double* __restrict top = column.bank;
   const double* __restrict lay = column.lay;
   const double* __restrict cover = column.cover;
@@ -173,7 +187,7 @@ const double* WedgeStrips::find_piles(const StripColumn& column) {
 }
 
 void WedgeStrips::find(const StripColumn& column, double cell) {
-  strips_in(column, cell, count_, at(in_column), at(width), at(bank), at(loose), at(pile));
+  strips_in(column, cell, {count_, at(in_column), at(width), at(bank), at(loose), at(pile)});
 }
 
 void WedgeStrips::begin(std::size_t first, std::size_t count, const LayerTerms& layers,
