@@ -139,8 +139,9 @@ void add_stability(const Machine& machine, const Reach& reach, std::vector<Warni
   }
 }
 
-void compare(const char* what, std::optional<double> stated, double computed, double most,
+void compare(const char* what, std::optional<double> stated, double computed,
              std::vector<Warning>& warnings) {
+  constexpr double most = 0.1;  // ours
   if (!stated || std::abs(computed / *stated - 1.0) <= most) return;
   warnings.emplace_back(WarningCode::data_sheet_differs,
                         std::string("the ") + what + " is " + readable(computed) +
@@ -156,26 +157,22 @@ bool is_empty(const DataSheet& sheet) {
 
 void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& sheet,
                std::vector<Warning>& warnings) {
-  constexpr double length = 0.05, force = 0.1, volume = 0.1, weight = 0.05, other = 0.1;  // ours
   double mass = machine.body ? machine.body->mass : std::nan("");
   for (const LinkMass& link : machine.links) mass += link.mass;
-  if (machine.body) compare("mass [kg]", sheet.operating_mass, mass, weight, warnings);
+  if (machine.body) compare("mass [kg]", sheet.operating_mass, mass, warnings);
   compare("heaped capacity of the bucket [m3]", sheet.bucket_capacity, heaped_capacity(machine),
-          volume, warnings);
-  compare("digging force of the bucket [N]", sheet.bucket_force, bucket_force(machine), force,
           warnings);
-  compare("digging force of the arm [N]", sheet.arm_force, arm_force(machine), force, warnings);
-  compare("reach on the ground [m]", sheet.ground_reach, reach.ground, length, warnings);
-  compare("digging depth [m]", sheet.depth, reach.depth, length, warnings);
-  compare("height of the tip [m]", sheet.height, reach.height, length, warnings);
+  compare("digging force of the bucket [N]", sheet.bucket_force, bucket_force(machine), warnings);
+  compare("digging force of the arm [N]", sheet.arm_force, arm_force(machine), warnings);
+  compare("reach on the ground [m]", sheet.ground_reach, reach.ground, warnings);
+  compare("digging depth [m]", sheet.depth, reach.depth, warnings);
+  compare("height of the tip [m]", sheet.height, reach.height, warnings);
   compare("dump height [m]", sheet.dump_height, sheet.dump_height ? dump_height(machine) : 0.0,
-          other, warnings);
-  compare("width of the bucket [m]", sheet.bucket_width, machine.bucket.width_outside, other,
           warnings);
-  compare("length of the tracks [m]", sheet.track_length, 2.0 * machine.track_front, other,
-          warnings);
+  compare("width of the bucket [m]", sheet.bucket_width, machine.bucket.width_outside, warnings);
+  compare("length of the tracks [m]", sheet.track_length, 2.0 * machine.track_front, warnings);
   if (machine.swing) {
-    compare("rate of the swing [rad/s]", sheet.swing_rate, machine.swing->speed, other, warnings);
+    compare("rate of the swing [rad/s]", sheet.swing_rate, machine.swing->speed, warnings);
   }
 }
 
