@@ -18,10 +18,6 @@ inline double height_at(const ProfileSide& side, double x) {
   return side.z + side.slope * (x - side.x);
 }
 
-}  // namespace
-
-namespace {
-
 /// Bit i of number i.
 struct CellBits {
   constexpr CellBits() {

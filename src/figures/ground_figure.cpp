@@ -4,51 +4,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "base/statistics.hpp"
+#include "ground/grid_cells.hpp"
+#include "ground/window.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr Eigen::Index most_cells = 200;
 
-/// The mean of the known cells of a block.
-double mean_of(const Eigen::Ref<const Eigen::ArrayXXd>& block) {
-  double sum = 0.0, count = 0.0;
-  for (Eigen::Index col = 0; col < block.cols(); ++col) {
-    for (Eigen::Index row = 0; row < block.rows(); ++row) {
-      if (!std::isfinite(block(row, col))) continue;
-      sum += block(row, col);
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
-}
-
+/// With what is left over at the upper edges.
 HeightMap coarsened(const HeightMap& map) {
-  const Eigen::Index longest = std::max(map.z.rows(), map.z.cols());
-  const Eigen::Index block = (longest + most_cells - 1) / most_cells;
+  const Eigen::Index rows = map.z.rows(), cols = map.z.cols();
+  const Eigen::Index block = (std::max(rows, cols) + most_cells - 1) / most_cells;
   if (block <= 1) return map;
-  HeightMap coarse = {map.origin, map.cell_size * static_cast<double>(block), {}};
-  coarse.z.resize((map.z.rows() + block - 1) / block, (map.z.cols() + block - 1) / block);
-  for (Eigen::Index col = 0; col < coarse.z.cols(); ++col) {
-    for (Eigen::Index row = 0; row < coarse.z.rows(); ++row) {
-      const Eigen::Index top = row * block, left = col * block;
-      coarse.z(row, col) = mean_of(map.z.block(top, left, std::min(block, map.z.rows() - top),
-                                               std::min(block, map.z.cols() - left)));
-    }
-  }
-  return coarse;
+  HeightMap whole = map;
+  const auto filled = [&](Eigen::Index cells) { return (cells + block - 1) / block * block; };
+  whole.z = Eigen::ArrayXXd::Constant(filled(rows), filled(cols), std::nan(""));
+  whole.z.topLeftCorner(rows, cols) = map.z;
+  return coarser(whole, block);
 }
 
 /// Most heights are inside, and they differ.
 ColourScale scale_of(const Eigen::ArrayXXd& heights) {
-  std::vector<double> known;
-  for (Eigen::Index i = 0; i < heights.size(); ++i) {
-    if (std::isfinite(heights(i))) known.push_back(heights(i));
-  }
+  const auto known = known_values(heights.isFinite().select(heights, std::nan("")));
   if (known.empty()) return {};
   constexpr double least_range = 0.02;  // ours [m]
   const double low = quantile(known, 0.005), high = quantile(known, 0.995);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <excavplan/simulation/dig_along.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/angles.hpp"

@@ -142,9 +142,10 @@ struct SiteJob::State {
     frame = work_frame(settings, map, first);
     const std::vector<JobStation> beyond = places_beyond();
     stations = stations_of(frame, settings);
-    can_leave_end = !beyond.empty() && is_one_group(stations);
-    if (is_one_group(stations))
+    if (is_one_group(stations)) {
+      can_leave_end = !beyond.empty();
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
+    }
     const JobStation last = stations.back();
     stations.insert(stations.end(), beyond.begin(), beyond.end());
     const JobStation lookout;
