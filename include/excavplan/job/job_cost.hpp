@@ -18,6 +18,7 @@ struct JobPrices {
   std::optional<double> truckload = {};  ///< haul and tip of one, >= 0
 };
 
+/// The cost of an estimated job and its parts.
 struct JobCost {
   EstimatedFigure total;    ///< each source moves all parts together
   double fuel = 0.0;        ///< part of it
@@ -25,6 +26,7 @@ struct JobCost {
   double truckloads = 0.0;  ///< likewise, of whole loads
 };
 
+/// Nothing if the prices that are told come to nothing.
 /// @throws Error (bad_input) if a price is out of range
 std::optional<JobCost> cost_of(const JobEstimate& estimate, const JobPrices& prices);
 

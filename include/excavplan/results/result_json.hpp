@@ -59,8 +59,9 @@ std::string to_json(const JobTrial& trial);
 std::string to_json(const JobEstimate& estimate, const JobOutline& job,
                     const std::optional<JobCost>& cost = {});
 
-/// Volumes as estimate-density prints them, and a density.
+/// Volumes as estimate-density prints them.
 std::string to_json(const VolumeChange& change);
+/// A density, likewise.
 std::string to_json(const RelativeDensity& density);
 
 /// What a survey is expected to measure, and what it needs for an error of the density of so many
