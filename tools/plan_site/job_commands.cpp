@@ -38,7 +38,10 @@ void add_progress(const SiteJob& job, Outcome& outcome) {
   for (const std::string& line : progress_lines(progress)) outcome.lines.push_back(line);
 }
 
-void add_scan_warnings(const SiteJob& job, Outcome& outcome) {
+/// What became of a scan.
+void add_scan(const ScanReport& report, const SiteJob& job, Outcome& outcome) {
+  outcome.json["recordings"] = report.recordings;
+  outcome.lines.insert(outcome.lines.end(), report.lines.begin(), report.lines.end());
   for (const Warning& each : job.scan_warnings()) outcome.warnings.push_back(each);
   outcome.json["scan_taken"] =
       std::none_of(outcome.warnings.begin(), outcome.warnings.end(),
@@ -57,9 +60,10 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   save_order(inputs.folder, order.settings, order.files);
   const JobSettings kept = load_order(inputs.folder);
   if (was_begun) forget_scan(inputs.folder, kept);
-  SiteJob job = SiteJob::begin(inputs.folder, kept, order.first, time_of(inputs.scan));
+  const SiteJob job = SiteJob::begin(inputs.folder, kept, order.first.scan, order.first.time);
   Outcome outcome;
   outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
+  add_scan(order.first.report, job, outcome);
   add_progress(job, outcome);
   for (const std::string& note : order.settings.surface.notes) console.note("design: " + note);
   return outcome;
@@ -115,10 +119,10 @@ double work_in(const std::string& file, const Machine& machine) {
   return log.integral(log.whole);
 }
 
-StepReport report_of(const JobInputs& inputs) {
+StepReport report_of(const JobInputs& inputs, const std::optional<TimedScan>& scan) {
   StepReport report;
-  report.time = time_of(inputs.scan);
-  if (inputs.scan.scan) report.scan = scan_of(inputs.scan);
+  report.time = scan ? scan->time : time_of(inputs.scan.time, {});
+  if (scan) report.scan = scan->scan;
   report.payload_mass = inputs.payload_mass;
   if (inputs.energy) report.joint_work = *inputs.energy;
   if (inputs.loads) {
@@ -133,7 +137,9 @@ StepReport report_of(const JobInputs& inputs) {
 Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
   if (!inputs.step) usage_error("--step is missing: the step that was done, as next names it");
   SiteJob job = job_in(inputs.folder);
-  StepReport report = report_of(inputs);
+  std::optional<TimedScan> scan;
+  if (inputs.scan.scan) scan = scan_of(inputs.scan);
+  StepReport report = report_of(inputs, scan);
   const JobStep present = job.next();
   if (inputs.base) {
     report.base = parse_base(*inputs.base);
@@ -147,7 +153,7 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
   }
   if (is_present) {
     job.done(present.id, report);
-    if (report.scan) add_scan_warnings(job, outcome);
+    if (scan) add_scan(scan->report, job, outcome);
   } else {
     outcome.lines.push_back("step         " + std::to_string(*inputs.step) +
                             " is not the present one, " + std::to_string(present.id) +
@@ -159,9 +165,10 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
 
 Outcome work_scan(const JobInputs& inputs, Console& /*console*/) {
   SiteJob job = job_in(inputs.folder);
-  job.look(scan_of(inputs.scan), time_of(inputs.scan));
+  const TimedScan scan = scan_of(inputs.scan);
+  job.look(scan.scan, scan.time);
   Outcome outcome;
-  add_scan_warnings(job, outcome);
+  add_scan(scan.report, job, outcome);
   add_progress(job, outcome);
   return outcome;
 }
