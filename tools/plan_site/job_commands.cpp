@@ -12,7 +12,9 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "live/page_server.hpp"
 #include "plan_site/estimate.hpp"
+#include "plan_site/job_feed.hpp"
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
@@ -173,7 +175,24 @@ Outcome work_scan(const JobInputs& inputs, Console& /*console*/) {
   return outcome;
 }
 
-Outcome work_show(const JobInputs& inputs, Console& /*console*/) {
+/// Shows a job in a browser while it goes on, until the tool is to stop.
+Outcome work_serve(const JobInputs& inputs, Console& console) {
+  if (inputs.report) usage_error("--serve excludes --report: the page is in the browser");
+  const ServeAddress address = parse_serve(*inputs.serve);
+  JobFeed feed(inputs.folder);
+  console.let_stop();
+  serve(feed, address,
+        {[&] { return console.stop_requested(); },
+         [&](const std::string& url) { console.note("the job is shown at " + url); }});
+  Outcome outcome;
+  const JobProgress& progress = feed.job().progress();
+  outcome.json["progress"] = progress_json(progress);
+  outcome.lines = progress_lines(progress);
+  return outcome;
+}
+
+Outcome work_show(const JobInputs& inputs, Console& console) {
+  if (inputs.serve) return work_serve(inputs, console);
   const JobSettings settings = load_order(inputs.folder);
   const SiteJob job = SiteJob::resume(inputs.folder, settings);
   Outcome outcome;
