@@ -19,6 +19,9 @@
 
 namespace excavplan {
 
+/// The ground before the job.
+inline constexpr const char* first_ground_file = "job-first-ground.tif";
+
 /// What a scan tells besides the ground.
 struct ScanNews {
   /// Median of how far the cuts since the last scan lie above where they were expected [m]; nothing

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/files.hpp"
+#include "base/input_file.hpp"
 #include "base/json.hpp"
 #include "ground/grid_cells.hpp"
 #include "job/cell_codes.hpp"
@@ -170,6 +171,20 @@ JobEvent read_event(JsonObject& object) {
   return event;
 }
 
+/// The whole lines of a file from the byte of one of them on; others may write it meanwhile.
+std::string lines_from(const std::string& path, std::uint64_t from) {
+  const InputFile file(path, false);
+  if (file.size() < from) return {};
+  if (file.size() > most_log_bytes) {
+    file.refuse("found " + std::to_string(file.size()) + " bytes, expected at most " +
+                std::to_string(most_log_bytes));
+  }
+  std::string text(file.size() - from, '\0');
+  file.read(from, text.data(), text.size());
+  text.resize(text.rfind('\n') + 1);
+  return text;
+}
+
 }  // namespace
 
 JobLog::JobLog(const std::string& folder, JobHistory start)
@@ -192,15 +207,45 @@ void JobLog::read_begin(const std::string& name, const std::string& line) {
   recorder_ = JobRecorder(start_);
 }
 
-void JobLog::read_line(const std::string& name, const std::string& line, std::uint64_t end) {
+JobLog::LoggedEvent JobLog::read_line(const std::string& name, const std::string& line,
+                                      std::uint64_t end) const {
   JsonObject object = JsonObject::of_others(name, line);
   JobEvent event = read_event(object);
   const JobHistory::Ground& now = recorder_.now();
   if (object.has("ground")) event.surface = read_heights(object.object("ground"), now.surface.z);
   if (object.has("seen")) event.seen_at = read_seen(object.object("seen"), now.seen_at, event.at);
-  recorder_.add(std::move(event));
-  marks_.push_back({static_cast<long long>(object.number("last_step", 0, 1e12)),
-                    static_cast<int>(object.number("scans", 0, 1e9)), end});
+  return {std::move(event),
+          {static_cast<long long>(object.number("last_step", 0, 1e12)),
+           static_cast<int>(object.number("scans", 0, 1e9)), end}};
+}
+
+void JobLog::add(LoggedEvent logged) {
+  recorder_.add(std::move(logged.event));
+  marks_.push_back(logged.mark);
+}
+
+bool JobLog::follow(const JobRecord& record) {
+  if (!marks_.empty() && !marks_.back().is_within(record)) return false;
+  const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(path_));
+  const std::string text = is_there ? lines_from(path_, last_line_.from) : "";
+  if (text.compare(0, last_line_.text.size(), last_line_.text) != 0) return false;
+  for (std::size_t at = last_line_.text.size(); at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    const std::string line = text.substr(at, end - at);
+    const std::uint64_t from = last_line_.from + last_line_.text.size();
+    const std::string name = path_ + ", byte " + std::to_string(from);
+    if (begun_ == 0) {
+      read_begin(name, line);
+      begun_ = line.size() + 1;
+    } else {
+      LoggedEvent logged = read_line(name, line, from + line.size() + 1);
+      if (!logged.mark.is_within(record)) break;
+      add(std::move(logged));
+    }
+    last_line_ = {from, line + '\n'};
+    at = end + 1;
+  }
+  return true;
 }
 
 void JobLog::resume(const JobRecord& record) {
@@ -217,7 +262,7 @@ void JobLog::resume(const JobRecord& record) {
       read_begin(name, line);
       begun_ = from;
     } else {
-      read_line(name, line, from);
+      add(read_line(name, line, from));
     }
   }
   if (begun_ == 0) return begin();

@@ -28,12 +28,17 @@ class JobLog {
   /// Reads it, as far as the record goes. A job without a log begins one.
   /// @throws Error (bad_file) naming file, line, key, value and rule
   void resume(const JobRecord& record);
+  /// Reads what another process wrote since, and changes nothing.
+  /// @return false if what was read before does not hold any more: to be begun anew
+  /// @throws Error (bad_file) as resume()
+  bool follow(const JobRecord& record);
   /// @param record  after the event
   void append(JobEvent event, const JobHistory::Ground& after, const JobRecord& record);
   /// Takes back what is ahead of the record.
   void cut(const JobRecord& record);
 
   const JobHistory& history() const { return recorder_.history(); }
+  const JobHistory::Ground& now() const { return recorder_.now(); }
 
  private:
   /// How far a record had come, and where the log ended then.
@@ -45,7 +50,12 @@ class JobLog {
       return last_step <= record.last_step && scans <= record.progress.scans;
     }
   };
-  void read_line(const std::string& name, const std::string& line, std::uint64_t end);
+  struct LoggedEvent {
+    JobEvent event;
+    Mark mark;
+  };
+  LoggedEvent read_line(const std::string& name, const std::string& line, std::uint64_t end) const;
+  void add(LoggedEvent logged);
   void read_begin(const std::string& name, const std::string& line);
 
   std::string path_;
@@ -53,6 +63,11 @@ class JobLog {
   JobRecorder recorder_;
   std::uint64_t begun_ = 0;  ///< where the first event stands
   std::vector<Mark> marks_;  ///< of each event
+  /// That follow() read last, by which it sees that nothing else was written there.
+  struct {
+    std::uint64_t from = 0;
+    std::string text;
+  } last_line_;
 };
 
 /// A history to begin with.

@@ -13,10 +13,13 @@
 #include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/plan_geometry.hpp"
+#include "base/statistics.hpp"
 #include "ground/window.hpp"
 
 namespace excavplan {
 namespace {
+
+constexpr double least_seen = 0.99;  // of a finished design; ours
 
 using Eigen::ArrayXXd;
 using Eigen::Vector2d;
@@ -106,6 +109,14 @@ Scan first_scan(const JobDesign& design) {
   return scan;
 }
 
+ArrayXXd raised(const ArrayXXd& design, const HeightMap& grid, const Eigen::Vector3d& over) {
+  ArrayXXd heights = design;
+  for_each_cell(design, [&](Cell at) {
+    heights(at.row, at.col) += over.x() + over.y() * grid.x(at.col) + over.z() * grid.y(at.row);
+  });
+  return heights;
+}
+
 double surface_of(const Terrain& ground, Cell at) {
   return ground.bank.z(at.row, at.col) + ground.loose(at.row, at.col);
 }
@@ -178,6 +189,52 @@ JobFrame reversed(const JobFrame& frame) {
   back.right = -frame.left;
   back.left = -frame.right;
   return back;
+}
+
+std::vector<double> above_design_around(const JobMap& map, const Terrain& ground, Cell cell) {
+  std::vector<double> above;
+  const auto add = [&](Cell at) {
+    const double one = map.counts(at.row, at.col) ? above_design(map, ground, at) : std::nan("");
+    if (!std::isnan(one)) above.push_back(one);
+  };
+  add(cell);
+  for_each_neighbour(map.counts, cell, add);
+  return above;
+}
+
+JobProgress measured(JobProgress progress, const JobMap& map, const MeasuredGround& now,
+                     double tolerance) {
+  progress.left_volume = 0.0;
+  const double area = map.target.cell_size * map.target.cell_size;
+  std::vector<double> errors;
+  double squares = 0.0;
+  int cells = 0;
+  int seen = 0;
+  int beyond = 0;
+  for_each_cell(map.target.z, [&](Cell at) {
+    if (std::isnan(map.target.z(at.row, at.col))) return;
+    ++cells;
+    const double error = above_design(map, now.terrain, at);
+    if (std::isnan(error)) return;
+    progress.left_volume += area * std::max(0.0, error);
+    if (std::isnan(now.seen(at.row, at.col))) return;
+    ++seen;
+    if (!map.counts(at.row, at.col)) return;
+    errors.push_back(std::abs(error));
+    squares += error * error;
+    auto around = above_design_around(map, now.terrain, at);
+    if (std::abs(median(around)) > 2.0 * tolerance) ++beyond;
+  });
+  progress.seen = cells > 0 ? static_cast<double>(seen) / cells : 0.0;
+  if (errors.empty()) return progress;
+  std::sort(errors.begin(), errors.end());
+  const auto count = static_cast<double>(errors.size());
+  progress.rms = std::sqrt(squares / count);
+  progress.p95 = errors[static_cast<std::size_t>(0.95 * (count - 1.0))];
+  progress.beyond_twice = beyond / count;
+  progress.is_finished = progress.p95 <= tolerance && progress.beyond_twice <= most_beyond_twice &&
+                         progress.seen >= least_seen;
+  return progress;
 }
 
 }  // namespace excavplan

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_progress.hpp>
 #include <excavplan/job/job_settings.hpp>
 
 #include "ground/grid_cells.hpp"
@@ -31,6 +34,27 @@ double above_design(const JobMap& map, const Terrain& ground, Cell at);
 
 /// @param ground  before the job
 JobMap map_of(const JobSettings& settings, const HeightMap& ground);
+
+/// Of a finished design beyond twice the tolerance; ours.
+inline constexpr double most_beyond_twice = 0.01;
+
+/// Of a cell and its neighbours that count, since a single one is as much noise [m].
+std::vector<double> above_design_around(const JobMap& map, const Terrain& ground, Cell cell);
+
+/// The ground as it is known.
+struct MeasuredGround {
+  const Terrain& terrain;
+  const Eigen::ArrayXXd& seen;  ///< when each cell was; NaN: never, or dug since
+};
+/// With what is measured set. @param tolerance  of the design [m]
+JobProgress measured(JobProgress progress, const JobMap& map, const MeasuredGround& now,
+                     double tolerance);
+
+/// A design as high as told, in the frame of ground that lies elsewhere.
+/// @param design  heights on the cells of `grid`
+/// @param over  height of that ground at the origin [m], its rise along x and y [-]
+Eigen::ArrayXXd raised(const Eigen::ArrayXXd& design, const HeightMap& grid,
+                       const Eigen::Vector3d& over);
 
 /// Where the design lies along the machine's line of work.
 struct JobFrame {

@@ -55,9 +55,7 @@ constexpr double most_off = 0.038;           // share of cells that may stay off
 constexpr double least_high = 0.005;         // of those that are too high, which passes can mend
 constexpr double heap_share = 1.6;           // of the tolerance: of such cells hardly any may stay
 constexpr double most_heaps = 0.006;         // share of these
-constexpr double most_beyond_twice = 0.01;  // share of a finished design beyond twice the tolerance
-constexpr double least_seen = 0.99;         // of a finished design
-constexpr double well_seen = 0.992;         // of it, so that no more is looked for
+constexpr double well_seen = 0.992;          // of it, so that no more is looked for
 constexpr int most_softer = 4;  // deviations of the strength below its mean that are tried
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
 constexpr double after_stall = 0.7;          // of the depth of a cut
@@ -90,55 +88,6 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
   return event;
 }
 
-/// Of a cell and its neighbours that count, since a single one is as much noise [m].
-std::vector<double> above_design_around(const JobMap& map, const Terrain& ground, Cell cell) {
-  std::vector<double> above;
-  const auto add = [&](Cell at) {
-    const double one = map.counts(at.row, at.col) ? above_design(map, ground, at) : std::nan("");
-    if (!std::isnan(one)) above.push_back(one);
-  };
-  add(cell);
-  for_each_neighbour(map.counts, cell, add);
-  return above;
-}
-
-/// Sets what is measured of the ground.
-JobProgress measured(JobProgress progress, const JobMap& map, const JobGround& now,
-                     double tolerance) {
-  const Terrain& ground = now.expected();
-  progress.left_volume = 0.0;
-  const double area = map.target.cell_size * map.target.cell_size;
-  std::vector<double> errors;
-  double squares = 0.0;
-  int cells = 0;
-  int seen = 0;
-  int beyond = 0;
-  for_each_cell(map.target.z, [&](Cell at) {
-    if (std::isnan(map.target.z(at.row, at.col))) return;
-    ++cells;
-    const double error = above_design(map, ground, at);
-    if (std::isnan(error)) return;
-    progress.left_volume += area * std::max(0.0, error);
-    if (std::isnan(now.seen()(at.row, at.col))) return;
-    ++seen;
-    if (!map.counts(at.row, at.col)) return;
-    errors.push_back(std::abs(error));
-    squares += error * error;
-    auto around = above_design_around(map, ground, at);
-    if (std::abs(median(around)) > 2.0 * tolerance) ++beyond;
-  });
-  progress.seen = cells > 0 ? static_cast<double>(seen) / cells : 0.0;
-  if (errors.empty()) return progress;
-  std::sort(errors.begin(), errors.end());
-  const auto count = static_cast<double>(errors.size());
-  progress.rms = std::sqrt(squares / count);
-  progress.p95 = errors[static_cast<std::size_t>(0.95 * (count - 1.0))];
-  progress.beyond_twice = beyond / count;
-  progress.is_finished = progress.p95 <= tolerance && progress.beyond_twice <= most_beyond_twice &&
-                         progress.seen >= least_seen;
-  return progress;
-}
-
 }  // namespace
 
 struct SiteJob::State {
@@ -165,12 +114,7 @@ struct SiteJob::State {
   /// In the frame of the ground as it is known.
   void hang_design() {
     if (settings.surface.hangs_on_scan) return;
-    const Eigen::Vector3d over = record.learning.datum.plane();
-    for_each_cell(design, [&](Cell at) {
-      map.target.z(at.row, at.col) = design(at.row, at.col) + over.x() +
-                                     over.y() * map.target.x(at.col) +
-                                     over.z() * map.target.y(at.row);
-    });
+    map.target.z = raised(design, map.target, record.learning.datum.plane());
   }
 
   JobFrame frame_at(const JobStation& station) const {
@@ -205,7 +149,8 @@ struct SiteJob::State {
   }
 
   JobProgress progress() const {
-    return measured(record.progress, map, ground, settings.design.tolerance);
+    return measured(record.progress, map, {ground.expected(), ground.seen()},
+                    settings.design.tolerance);
   }
 
   JobStep decide();
@@ -254,7 +199,7 @@ struct SiteJob::State {
       throw;
     }
   }
-  std::string first_file() const { return folder + "/job-first-ground.tif"; }
+  std::string first_file() const { return folder + '/' + first_ground_file; }
 
   std::string folder;
   JobSettings settings;

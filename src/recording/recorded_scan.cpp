@@ -241,6 +241,7 @@ class ScanReader {
     scan.messages = heads_.size();
     scan.first = seconds_of(time_between(topic_.first, first().time));
     scan.last = seconds_of(time_between(topic_.first, heads_.back().time));
+    scan.seen_at = seconds_of(seen_at(heads_.back()));
     const bool stood = stood_still();
     const bool averages = heads_.size() > 1 && stood && same_organised_frames();
     if (heads_.size() == 1) {
@@ -266,6 +267,11 @@ class ScanReader {
     return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
   }
   const MessageHead& first() const { return heads_.front(); }
+  static std::int64_t seen_at(const MessageHead& head) {
+    const TimeRange usual = about(head.time);
+    const std::int64_t stamp = head.header.stamp;
+    return stamp >= usual.from && stamp <= usual.to ? stamp : head.time;
+  }
   ForScan for_scan() const { return {topic_.name, topic_.first, heads_.back().time}; }
   TimeRange around(std::int64_t margin) const {
     return {later(first().time, -margin), later(heads_.back().time, margin)};

@@ -9,13 +9,10 @@
 #include "figures/job_estimate_figure.hpp"
 
 namespace excavplan {
-namespace {
 
 std::string title_of(const JobDesign& design) {
   return design.name.empty() ? "Job" : "Job " + design.name;
 }
-
-}  // namespace
 
 Report trial_report(const JobTrial& trial, ReportJob job) {
   Report report;

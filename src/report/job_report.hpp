@@ -16,6 +16,8 @@
 
 namespace excavplan {
 
+std::string title_of(const JobDesign& design);
+
 /// A job that was played against hidden truth.
 Report trial_report(const JobTrial& trial, ReportJob job);
 

@@ -77,16 +77,27 @@ std::string plot_part(const Report& report) {
 }
 
 ReportBody body_of(const Report& report) {
-  if (report.job) return body_of(*report.job, report.note);
+  if (report.job) return body_of(*report.job, report.note, report.stream);
   return report.scene.areas.empty() ? plain_body(report.note) : body_of(report.scene, report.note);
 }
 
 }  // namespace
 
+nlohmann::ordered_json changing_parts(const Report& report, const ReportedRun& run) {
+  const auto result = parse_ordered_json("the result", run.json);
+  return {{"verdict", verdict(report, run)},
+          {"headline", headline_tiles(result, report.headline)},
+          {"figures", figure_tables(result)},
+          {"result", run.json}};
+}
+
 std::string html_page(const Report& report, const ReportedRun& run) {
   const auto result = parse_ordered_json("the result", run.json);
   const ReportBody body = body_of(report);
   const std::map<std::string, std::string> parts = {
+      {"connects", report.stream.empty() ? "" : " connect-src 'self';"},
+      {"loads", report.stream.empty() ? "works offline and loads nothing."
+                                      : "follows its job as long as it is served."},
       {"key", checksum_text(body.data + report.title)},
       {"title", html(report.title)},
       {"tool", html(run.tool)},

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "report/report_job.hpp"
 #include "report/report_scene.hpp"
 #include "report/reported_run.hpp"
@@ -27,10 +29,16 @@ struct Report {
   bool is_done = false;               ///< that state is the one that was wanted
   std::string fault = {};             ///< "The dig stalled."; empty if nothing failed
   std::string note = {};              ///< what ground and loads of the scene are
+  /// Address of the events that keep a page about a job up to date; empty: it stays as it is.
+  std::string stream = {};
 };
 
-/// One page of HTML with all that it needs inside: it loads nothing and runs no script but its own,
-/// whatever the texts in it. Equal arguments give equal bytes.
+/// What of a page changes as its job goes on, for data/report/app/live.js: HTML by the name of the
+/// part, and the result.
+nlohmann::ordered_json changing_parts(const Report& report, const ReportedRun& run);
+
+/// One page of HTML with all that it needs inside: it loads nothing, but for its stream, and runs
+/// no script but its own, whatever the texts in it. Equal arguments give equal bytes.
 /// @throws Error (bad_file) if data/report cannot be read
 std::string html_page(const Report& report, const ReportedRun& run);
 

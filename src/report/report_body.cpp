@@ -78,16 +78,22 @@ ReportBody plain_body(const std::string& note) {
   return {"", html(note), "{}", app({"page", "copy"}), false};
 }
 
-ReportBody body_of(const ReportJob& job, const std::string& note) {
+ReportBody body_of(const ReportJob& job, const std::string& note, const std::string& stream) {
+  nlohmann::ordered_json data = to_json(job);
+  std::vector<const char*> parts = {"page",        "data",          "cells",    "colours",
+                                    "job_scene",   "kinematics",    "legend",   "stage",
+                                    "ground_mesh", "machine_model", "job_view", "job_map",
+                                    "axes",        "job_section",   "charts",   "job_charts",
+                                    "player",      "job_page",      "end",      "copy"};
+  if (!stream.empty()) {
+    data["stream"] = stream;
+    parts.push_back("live");
+  }
   return {
       filled("job.html", {{"stage", stage_of("site", note)}, {"steps", step_rows(job.history)}}),
       "Frame: that of the site, x east, y north, z up; headings counter-clockwise from x; "
       "lengths in metres.",
-      embedded(to_json(job)),
-      app({"page",       "data",    "cells",    "colours",     "job_scene",
-           "kinematics", "legend",  "stage",    "ground_mesh", "machine_model",
-           "job_view",   "job_map", "axes",     "job_section", "charts",
-           "job_charts", "player",  "job_page", "end",         "copy"})};
+      embedded(data), app(parts)};
 }
 
 }  // namespace excavplan

@@ -28,7 +28,8 @@ struct ReportBody {
 };
 /// @param note  what ground and loads are
 ReportBody body_of(const ReportScene& scene, const std::string& note);
-ReportBody body_of(const ReportJob& job, const std::string& note);
+/// @param stream  of events that it follows; empty: none
+ReportBody body_of(const ReportJob& job, const std::string& note, const std::string& stream);
 /// Of a page without ground.
 ReportBody plain_body(const std::string& note);
 

@@ -54,35 +54,35 @@ Eigen::AlignedBox2d place_of(const JobHistory& history) {
   return {box.min().array() - margin, box.max().array() + margin};
 }
 
-/// A block of cells, each drawn one a square of `by`.
-struct Crop {
-  Index row = 0, col = 0, rows = 0, cols = 0, by = 1;
+/// Those where something is or happened.
+ReportedCells reported_cells(const JobHistory& history) {
+  const HeightMap& grid = history.before;
+  const Eigen::AlignedBox2d box = place_of(history);
+  const auto within = [&](double place, double origin, Index most) {
+    return std::clamp(static_cast<Index>(std::floor((place - origin) / grid.cell_size)), Index{0},
+                      most - 1);
+  };
+  ReportedCells drawn;
+  drawn.col = within(box.min().x(), grid.origin.x(), grid.z.cols());
+  drawn.row = within(box.min().y(), grid.origin.y(), grid.z.rows());
+  drawn.cols = within(box.max().x(), grid.origin.x(), grid.z.cols()) + 1 - drawn.col;
+  drawn.rows = within(box.max().y(), grid.origin.y(), grid.z.rows()) + 1 - drawn.row;
+  drawn.by = coarsening(drawn.rows, drawn.cols);
+  return drawn;
+}
 
-  explicit Crop(const JobHistory& history) {
-    const HeightMap& grid = history.before;
-    const Eigen::AlignedBox2d box = place_of(history);
-    const auto within = [&](double place, double origin, Index most) {
-      return std::clamp(static_cast<Index>(std::floor((place - origin) / grid.cell_size)), Index{0},
-                        most - 1);
-    };
-    col = within(box.min().x(), grid.origin.x(), grid.z.cols());
-    row = within(box.min().y(), grid.origin.y(), grid.z.rows());
-    cols = within(box.max().x(), grid.origin.x(), grid.z.cols()) + 1 - col;
-    rows = within(box.max().y(), grid.origin.y(), grid.z.rows()) + 1 - row;
-    by = coarsening(rows, cols);
-  }
+HeightMap drawn_of(const ReportedCells& drawn, const HeightMap& map) {
+  HeightMap part = map;
+  part.origin += map.cell_size *
+                 Eigen::Vector2d(static_cast<double>(drawn.col), static_cast<double>(drawn.row));
+  part.z = map.z.block(drawn.row, drawn.col, drawn.rows, drawn.cols);
+  return coarser(part, drawn.by);
+}
 
-  HeightMap of(const HeightMap& map) const {
-    HeightMap part = map;
-    part.origin +=
-        map.cell_size * Eigen::Vector2d(static_cast<double>(col), static_cast<double>(row));
-    part.z = map.z.block(row, col, rows, cols);
-    return coarser(part, by);
-  }
-  ArrayXXd of(const ArrayXXd& layer) const {
-    return middle_cells(ArrayXXd(layer.block(row, col, rows, cols)), by);
-  }
-};
+ArrayXXd drawn_of(const ReportedCells& drawn, const ArrayXXd& layer) {
+  return middle_cells(ArrayXXd(layer.block(drawn.row, drawn.col, drawn.rows, drawn.cols)),
+                      drawn.by);
+}
 
 // ---- Layers -----------------------------------------------------------------------------------
 
@@ -150,21 +150,11 @@ Json event_json(const JobEvent& event) {
   return json;
 }
 
-Json events_json(const JobHistory& history, const Crop& crop) {
+Json events_json(const JobHistory& history) {
   Json events = Json::array();
-  ArrayXXi heights;
-  ArrayXXd seen;
+  StepCoder coder(history);
   history.play([&](std::size_t done, const JobHistory::Ground& ground) {
-    const ArrayXXi now = millimetres_of(crop.of(ground.surface).z);
-    const ArrayXXd seen_now = crop.of(ground.seen_at);
-    if (done > 0) {
-      Json json = event_json(history.events[done - 1]);
-      json["ground"] = block_json(now - heights, false);
-      json["seen"] = block_json(news(seen, seen_now), true);
-      events.push_back(std::move(json));
-    }
-    heights = now;
-    seen = seen_now;
+    if (done > 0) events.push_back(coder.next(history.events[done - 1], ground));
   });
   return events;
 }
@@ -238,35 +228,57 @@ std::string what_text(const JobEvent& event) {
 
 nlohmann::ordered_json to_json(const ReportJob& job) {
   const JobHistory& history = job.history;
-  const Crop crop(history);
-  const HeightMap before = crop.of(history.before);
+  const ReportedCells drawn = reported_cells(history);
+  const HeightMap before = drawn_of(drawn, history.before);
   const JobDesign& design = history.design;
-  Json json = {{"origin_m", {number(before.origin.x()), number(before.origin.y())}},
-               {"cell_m", number(before.cell_size)},
-               {"rows", before.z.rows()},
-               {"cols", before.z.cols()},
-               {"before", first_codes(before.z)},
-               {"target", first_codes(crop.of(history.target).z)},
-               {"seen", codes_of(steps_of(crop.of(history.seen_at).isFinite().cast<int>()))},
-               {"design_m3", history.design_volume},
-               {"design", design_json(design)}};
+  Json json = {
+      {"origin_m", {number(before.origin.x()), number(before.origin.y())}},
+      {"cell_m", number(before.cell_size)},
+      {"rows", before.z.rows()},
+      {"cols", before.z.cols()},
+      {"before", first_codes(before.z)},
+      {"target", first_codes(drawn_of(drawn, history.target).z)},
+      {"seen", codes_of(steps_of(drawn_of(drawn, history.seen_at).isFinite().cast<int>()))},
+      {"design_m3", history.design_volume},
+      {"design", design_json(design)}};
   if (design.words) json["heading_rad"] = number(design.words->heading);
   json["machine"] = machine_json(job.machine);
-  json["events"] = events_json(history, crop);
+  json["events"] = events_json(history);
   return json;
+}
+
+StepCoder::StepCoder(const JobHistory& history)
+    : drawn_(reported_cells(history)),
+      heights_(millimetres_of(drawn_of(drawn_, history.before).z)),
+      seen_(drawn_of(drawn_, history.seen_at)) {}
+
+bool StepCoder::fits(const JobHistory& history) const { return drawn_ == reported_cells(history); }
+
+nlohmann::ordered_json StepCoder::next(const JobEvent& event, const JobHistory::Ground& after) {
+  const ArrayXXi heights = millimetres_of(drawn_of(drawn_, after.surface).z);
+  const ArrayXXd seen = drawn_of(drawn_, after.seen_at);
+  Json json = event_json(event);
+  json["ground"] = block_json(heights - heights_, false);
+  json["seen"] = block_json(news(seen_, seen), true);
+  heights_ = heights;
+  seen_ = seen;
+  return json;
+}
+
+std::string step_row(const JobEvent& event, std::size_t number) {
+  const std::string text = std::to_string(number);
+  return "<tr data-step=\"" + text + "\"><th scope=\"row\">" + text + "</th>" +
+         cell(what_text(event)) + cell(base_text(event.base), "number") +
+         cell(payload_text(event), "number") +
+         cell(event.energy ? decimals(*event.energy / 1000.0, 1) : "", "number") +
+         cell(decimals(event.time, 1), "number") + cell(decimals(event.left_volume, 3), "number") +
+         cell(event.trustworthy ? "yes" : "no") + cell(doubts_text(event)) + "</tr>\n";
 }
 
 std::string step_rows(const JobHistory& history) {
   std::string rows;
-  for (std::size_t i = 0; i < history.events.size(); ++i) {
-    const JobEvent& event = history.events[i];
-    rows += "<tr data-step=\"" + std::to_string(i + 1) + "\"><th scope=\"row\">" +
-            std::to_string(i + 1) + "</th>" + cell(what_text(event)) +
-            cell(base_text(event.base), "number") + cell(payload_text(event), "number") +
-            cell(event.energy ? decimals(*event.energy / 1000.0, 1) : "", "number") +
-            cell(decimals(event.time, 1), "number") +
-            cell(decimals(event.left_volume, 3), "number") +
-            cell(event.trustworthy ? "yes" : "no") + cell(doubts_text(event)) + "</tr>\n";
+  for (const JobEvent& event : history.events) {
+    rows += step_row(event, 1 + static_cast<std::size_t>(&event - history.events.data()));
   }
   return rows;
 }

@@ -59,6 +59,7 @@ Json recorded_scan_json(const std::string& text, const RecordedScan& scan) {
       {"messages", scan.messages},
       {"first_s", scan.first},
       {"last_s", scan.last},
+      {"seen_at_s", scan.seen_at},
       {"merge", name(scan.merge)},
       {"frame", scan.frame},
       {"recorded_frame", scan.recorded_frame},

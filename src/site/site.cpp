@@ -161,6 +161,7 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
   if (is_empty()) {
     next.ground = first_ground(event.before.value_or(event.scan), event.time, settings);
     next.first = next.ground;
+    update.warnings = event.scan.doubts;
     update.taken = true;
   } else {
     next.first = site.first;

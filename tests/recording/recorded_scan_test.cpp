@@ -111,6 +111,19 @@ TEST(RecordedScan, WithATimeItIsTheFirstMessageAtOrAfterIt) {
   EXPECT_EQ(x_at(98.5), 100.0);
 }
 
+TEST(RecordedScan, IsSeenAtItsStampUnlessItsClockWasNotSet) {
+  RecordingInMemory recording = recording_from_zero();
+  const auto add = [&](std::int64_t time, std::int64_t stamp) {
+    recording.add("/points", cloud_type, time, cloud_bytes(stamp, "lidar", {{1.0, 0.0, 0.0}}));
+  };
+  constexpr std::int64_t now = 1700000000000 * ms;
+  add(now, epoch + now - 80 * ms);
+  add(now + 1000 * ms, 5 * ms);
+  const double start = 1e3 + 1.7e9;
+  EXPECT_NEAR(read_recorded_scan(recording, query_of("/points")).seen_at, start - 0.08, 1e-6);
+  EXPECT_NEAR(read_recorded_scan(recording, query_of("/points", 1.0)).seen_at, start + 1.0, 1e-6);
+}
+
 TEST(RecordedScan, ASpanTakesAllMessagesBothEndsIncluded) {
   RecordingInMemory recording = numbered_clouds();
   const RecordedScan scan = read_recorded_scan(recording, query_of("/points", 2.0, 2.0));

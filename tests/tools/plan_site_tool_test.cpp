@@ -1,13 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
+#include <csignal>
 #include <fstream>
 #include <functional>
 #include <string>
 
 #include <excavplan/machine/trajectory.hpp>
 
+#include "support/http_client.hpp"
 #include "support/plain_site_folder.hpp"
 #include "support/report_page.hpp"
 #include "support/tool_answers.hpp"
@@ -220,6 +226,89 @@ TEST_F(PlanSite, AnEstimateNamesWhatIsWrong) {
   refuse({job()}, "holds no job: it has no order.json", 3);
   refuse({job(), "--trench", "10x1x1"}, "FOLDER excludes --site, --trench");
   refused(2, "FOLDER is missing", "plan-site", {"next"});
+}
+
+/// plan-site show --serve as a process of its own.
+class Served {
+ public:
+  explicit Served(const Words& words) {
+    std::array<int, 2> ends{};
+    if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
+    child_ = started("plan-site", words, [&] {
+      ::dup2(::open("/dev/null", O_WRONLY), STDOUT_FILENO);
+      ::dup2(ends[1], STDERR_FILENO);
+    });
+    ::close(ends[1]);
+    std::string text;
+    for (char letter = 0; letter != '\n' && ::read(ends[0], &letter, 1) == 1;) text += letter;
+    ::close(ends[0]);
+    const std::size_t url = text.find("http://");
+    said = text;
+    if (url != std::string::npos) at = parts_of(text.substr(url, text.size() - url - 1));
+  }
+  ~Served() { end(SIGKILL); }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  /// @return its exit code
+  int end(int signal) {
+    if (child_ == 0) return -1;
+    ::kill(child_, signal);
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    child_ = 0;
+    return exit_code(status);
+  }
+  std::string request(const std::string& path) const {
+    return "GET " + path + at.query + " HTTP/1.1\r\nHost: " + at.host + "\r\n\r\n";
+  }
+
+  std::string said;  ///< its first line
+  ServedUrl at;
+
+ private:
+  pid_t child_ = 0;
+};
+
+TEST_F(PlanSite, IsServedWhileItGoesOn) {
+  answer("plan-site", order());
+  Served served({"show", job(), "--serve", "0"});
+  if (contains(served.said, "without Boost.Beast")) GTEST_SKIP() << served.said;
+  ASSERT_NE(served.at.port, 0) << served.said;
+  HttpClient page(served.at.port), events(served.at.port);
+  page.send(served.request("/?"));
+  const std::string html = page.all();
+  const json drawn = drawn_on(html);
+  EXPECT_TRUE(drawn["events"].empty());
+  const std::string stream = drawn["stream"].get<std::string>();
+  EXPECT_EQ(stream.rfind("events?", 0), 0U);
+  EXPECT_TRUE(contains(html, "connect-src 'self'"));
+  events.send(served.request("/" + stream + "&steps=0&"));
+  events.until("event: state\n");
+
+  const json move = next();  // the server holds no lock
+  const std::string planned = events.until("Next: step 1, move.");
+  EXPECT_TRUE(contains(planned, "Next: step 1, move."));
+  done(move, {"--base", "-0.6,0,0"});
+  const std::string& come = events.until("id: 0.1\n");
+  events.until("\"row\":\"<tr data-step=");
+  const std::size_t data = come.find("data: ", come.find("event: step"));
+  const json step = json::parse(come.substr(data + 6, come.find('\n', data) - data - 6));
+  EXPECT_EQ(step["event"]["what"], "move");
+  EXPECT_EQ(step["event"]["base"][0], -0.6);
+  answer("plan-site", {"undo", job()});
+  EXPECT_TRUE(contains(events.until("event: reload"), "event: reload"));
+  EXPECT_EQ(served.end(SIGTERM), 0);
+  Served interrupted({"show", job(), "--serve", "localhost:0"});
+  EXPECT_EQ(interrupted.end(SIGINT), 0);
+}
+
+TEST_F(PlanSite, ServesNothingThatIsNotAJob) {
+  refused(2, "--serve: 'here' is not PORT or ADDRESS:PORT", "plan-site",
+          {"show", job(), "--serve", "here"});
+  refused(3, "holds no job: it has no order.json", "plan-site", {"show", job(), "--serve", "0"});
+  refused(2, "--serve excludes --report", "plan-site",
+          {"show", job(), "--serve", "0", "--report", folder.file("page.html")});
 }
 
 TEST_F(PlanSite, WrongInputsNameKeyAndValue) {

@@ -49,14 +49,99 @@ TEST_F(Recordings, InspectCloudListsWhatIsThere) {
   }
 }
 
-TEST_F(Recordings, AScanOfOneIsNoTerrainUntilItIsWritten) {
-  for (const char* const rest : {":/merged/points@0s+1s", ":/merged/points", "@0s+1s"}) {
-    for (const char* const tool : {"plan-path", "simulate-dig"}) {
-      refused(
-          3, rest + std::string(": --terrain takes a cloud, no scan of a recording; inspect-cloud"),
-          tool, {"--density", "40", "--terrain", dig + rest});
+/// Without what differs between a scan of a recording and the same one in a file.
+/// @param scans  as they were named
+json plan_alone(json plan, const Words& scans) {
+  for (const char* const key : {"recordings", "wall_time_s"}) plan.erase(key);
+  for (json& warning : plan["warnings"]) {
+    std::string text = warning["message"];
+    for (const std::string& scan : scans) {
+      const std::size_t at = text.find(scan);
+      if (at != std::string::npos) text.replace(at, scan.size(), "a scan");
     }
+    warning["message"] = text;
   }
+  return plan;
+}
+
+TEST_F(Recordings, AScanIsTheGroundOfAPlanAsItsCloudIs) {
+  const std::string before = dig + ":/merged/points@0s+1s", after = dig + ":/merged/points@59s+2s";
+  const std::string cloud = folder.file("before.ply"), around = folder.file("after.ply");
+  answer("inspect-cloud", {before, "--out", cloud});
+  answer("inspect-cloud", {after, "--out", around});
+  const Words density = {"--density", "40", "--terrain"};
+  const json recorded = answer("plan-path", density + Words{before, "--surroundings", after});
+  ASSERT_EQ(recorded.at("recordings").size(), 2U) << "each is read once";
+  EXPECT_EQ(recorded.at("/recordings/0/messages"_json_pointer), 4);
+  EXPECT_NEAR(number(recorded, "/recordings/1/first_s"), 60.0, 1e-6);
+  EXPECT_NEAR(number(recorded, "/recordings/1/seen_at_s"), 1.7e9 + 60.3, 1e-6);
+  EXPECT_EQ(recorded.at("ground"), "as scanned");
+  const auto alone = [&](const std::string& tool, const Words& words) {
+    return plan_alone(answer(tool, density + words), {before, after, cloud, around});
+  };
+  EXPECT_EQ(alone("plan-path", {before, "--surroundings", after}),
+            alone("plan-path", {cloud, "--surroundings", around}));
+  EXPECT_EQ(alone("simulate-dig", {before}), alone("simulate-dig", {cloud}));
+  EXPECT_FALSE(answer("plan-path", density + Words{cloud}).contains("recordings"));
+}
+
+TEST_F(Recordings, AScanComesIntoTheFrameOfThePlan) {
+  const std::string lidar = recording("scene.db3") + ":/lidar/points@0.75s+2s";
+  const std::string cloud = folder.file("map.ply");
+  answer("inspect-cloud", {lidar, "--tf-frame", "map", "--out", cloud});
+  const Words plan = {"--density", "40", "--terrain"};
+  const Words turned = {"--terrain-frame", "0,0,-0.3,0,0,-0.7071068,0.7071068"};
+  const json recorded = answer("plan-path", plan + Words{lidar, "--tf-frame", "map"} + turned);
+  EXPECT_EQ(recorded.at("/recordings/0/frame"_json_pointer), "map");
+  EXPECT_EQ(plan_alone(recorded, {lidar}),
+            plan_alone(answer("plan-path", plan + Words{cloud} + turned), {cloud}));
+  const std::string tool = "plan-path",
+                    images = recording("scene.db3") + ":/camera/depth/image_raw";
+  refused(3, "frames", tool, plan + Words{lidar, "--tf-frame", "site"});
+  refused(2, "name the frame into which", tool, plan + Words{images + "@0s+5s"});
+  refused(2, "holds points in metres", tool, plan + Words{lidar, "--depth-unit", "0.25mm"});
+  refused(2, "--tf-frame needs scans of a recording", tool,
+          plan + Words{scan, "--tf-frame", "map"});
+  refused(2, "--tf-frame needs scans of a recording", tool,
+          {"--density", "40", "--tf-frame", "map"});
+  refused(2, "--depth-unit needs depth images", "simulate-dig",
+          plan + Words{scan, "--depth-unit", "0.25mm"});
+  refused(2, "a topic that begins with /", tool, plan + Words{dig + "@0s+1s"});
+}
+
+TEST_F(Recordings, WhatIsDamagedIsLeftOutOfTheGroundAndSaid) {
+  const std::string whole = content_of(dig);
+  const std::string cut = folder.write("cut.mcap", whole.substr(0, whole.size() * 4 / 5));
+  const json plan =
+      answer("plan-path", {"--density", "40", "--terrain", cut + ":/merged/points@0s+1s"});
+  EXPECT_TRUE(warns(plan, "recording_cut_off"));
+  const json around = answer("plan-path", {"--density", "40", "--terrain", scan, "--surroundings",
+                                           cut + ":/merged/points@0s+1s"});
+  EXPECT_TRUE(warns(around, "recording_cut_off"));
+  const json job =
+      answer("plan-site",
+             {"new", folder.file("job"), "--trench", "1.5x1x0.2", "--from", "4,0", "--heading", "0",
+              "--windrow", "3,1.2,8,1.2,8,2.6,3,2.6", "--scan", cut + ":/merged/points@0s+1s"});
+  EXPECT_TRUE(warns(job, "recording_cut_off"));
+}
+
+TEST_F(Recordings, AScanOfAJobIsOfTheTimeAtWhichItWasRecorded) {
+  const std::string job = folder.file("job"), points = dig + ":/merged/points@";
+  const json begun =
+      answer("plan-site", {"new", job, "--trench", "1.5x1x0.2", "--from", "4,0", "--heading", "0",
+                           "--windrow", "3,1.2,8,1.2,8,2.6,3,2.6", "--scan", points + "0s+1s"});
+  EXPECT_EQ(begun.at("/recordings/0/messages"_json_pointer), 4);
+  refused(2, "--tf-frame needs scans of a recording", "plan-site",
+          {"scan", job, "--scan", later_scan, "--tf-frame", "map"});
+  const std::string old =
+      "the scan is of 1700000000.2 s, older than the last one of the site, of "
+      "1700000000.3 s";
+  refused(2, old, "plan-site", {"scan", job, "--scan", points + "0s+0.2s"});
+  const json seen = answer("plan-site", {"scan", job, "--scan", points + "59s+2s"});
+  EXPECT_EQ(seen.at("scan_taken"), true);
+  EXPECT_NEAR(number(seen, "/recordings/0/seen_at_s"), 1.7e9 + 60.3, 1e-6);
+  const json told = json::parse(content_of(job + "/site.json"));
+  EXPECT_TRUE(contains(told.dump(), "1700000060.3")) << told;
 }
 
 TEST_F(Recordings, AScanIsWrittenInTheFrameAskedFor) {

@@ -3,7 +3,6 @@
 #include "estimate_density/site_estimate.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include <excavplan/results/stated_dig.hpp>
 
@@ -12,11 +11,6 @@
 
 namespace excavplan::tools {
 namespace {
-
-double now() {
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(since_1970).count();
-}
 
 std::string counted(const excavplan::Site& site) {
   return std::to_string(site.updates()) + " scans, " + std::to_string(site.digs()) +
@@ -41,7 +35,6 @@ nlohmann::ordered_json ground_json(const GroundState& ground) {
 void add_told_dig(const SiteEstimateInputs& inputs, const Machine& machine, SiteEvent& event) {
   event.base = base_of(inputs.at);
   event.dug = !inputs.no_dig;
-  event.time = inputs.time ? *inputs.time : now();
   event.stalled = inputs.stalled;
   if (!inputs.dug) return;
   if (event.options.dug_path) usage_error("--dug and --dug-path both tell the path: give one");
@@ -123,6 +116,7 @@ Outcome work_on_site(const EstimateInputs& inputs) {
   KnownDig dig = known_dig(inputs);
   if (!dig.options.soil.kind) usage_error("--site with a --law of an unknown soil needs --soil");
   event.options = dig.options;
+  event.time = time_of(inputs.site.time, report);
   add_told_dig(inputs.site, dig.machine, event);
   inputs.second.apply_to(dig.law, event.options);
   const SiteSettings settings = {

@@ -18,8 +18,9 @@ void declare_site(Arguments& arguments, SiteEstimateInputs& inputs) {
     arguments.flag("stalled", inputs.stalled, "the dig was given up: the ground is strong");
     arguments.flag("no-update", inputs.no_update, "leave the site as it is");
     arguments.flag("undo", inputs.undo, "take the last update of the site back; without scans");
-    arguments.option("time", inputs.time, Quantity::time,
-                     "when AFTER was scanned, since 1970-01-01 UTC (default: now)");
+    arguments.option(
+        "time", inputs.time, Quantity::time,
+        "when AFTER was scanned, since 1970-01-01 UTC (default: as recorded, else now)");
   });
   arguments.exclude("undo", {"no-update", "dug", "no-dig", "stalled", "time"});
   arguments.exclude("no-dig", {"dug", "stalled"});

@@ -14,7 +14,7 @@ constexpr std::size_t longest_line = 4000;  ///< of a text on the terminal; ours
 /// Progress and notes on standard error while a tool works.
 class Console {
  public:
-  Console(bool quiet, bool terminal, const Signals& signals)
+  Console(bool quiet, bool terminal, Signals& signals)
       : quiet_(quiet), terminal_(terminal), signals_(signals) {}
 
   /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
@@ -23,6 +23,8 @@ class Console {
   void note(const std::string& line);
   /// True once the user or the system asked a tool that can stop early to stop.
   bool stop_requested() const { return signals_.stop_requested(); }
+  /// From here on the tool can stop early.
+  void let_stop() { signals_.let_stop(); }
   /// Removes the progress line.
   void clear();
 
@@ -31,7 +33,7 @@ class Console {
 
   bool quiet_;
   bool terminal_;
-  const Signals& signals_;
+  Signals& signals_;
   std::mutex mutex_;  ///< of standard error and of
   bool line_open_ = false;
 };

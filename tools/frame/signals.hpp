@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <thread>
 
 namespace excavplan::tools {
@@ -21,6 +22,8 @@ class Signals {
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
 
+  /// From here on the tool can stop.
+  void let_stop() { can_stop_ = true; }
   /// True once INT, TERM or HUP has come.
   bool stop_requested() const;
   /// From here on a closed pipe ends the program, as it does by default: only standard output is
@@ -30,7 +33,7 @@ class Signals {
  private:
   void watch() const;
 
-  const bool can_stop_;
+  std::atomic<bool> can_stop_;
   std::thread watcher_;
 };
 

@@ -209,7 +209,7 @@ int run(const CommandWords& command, const About& about,
   }
   refuse_left_over(words.left_over, arguments.entries());
   const std::string settings = add_settings(arguments.entries(), about, input, words);
-  const Signals signals(about.can_stop_early);
+  Signals signals(about.can_stop_early);
   naming_settings(arguments.entries(), words, [&] {
     refuse_excluded(arguments.entries(), words);
     assign(arguments.entries(), words, input);

@@ -30,6 +30,12 @@ std::string line_of(const RecordedScan& scan) {
   return line + (scan.frame.empty() ? "" : ", in frame " + safe_text(scan.frame, longest_frame));
 }
 
+std::optional<RecordingQuery> query_of(const std::string& text) {
+  std::optional<RecordingQuery> query = parse_recording_spec(text);
+  if (!query && is_recording(text)) query = RecordingQuery{text, {}, {}, 0.0, {}, {}};
+  return query;
+}
+
 }  // namespace
 
 void declare_recorded(Arguments& arguments, RecordedOptions& options) {
@@ -40,10 +46,21 @@ void declare_recorded(Arguments& arguments, RecordedOptions& options) {
       "of a count in the depth images of a recording: 0.25mm, 0.125mm (default: 1mm)");
 }
 
+bool is_recorded(const std::string& text) { return query_of(text).has_value(); }
+
+void require_recording(const RecordedOptions& options, bool is_there) {
+  if (is_there) return;
+  if (!options.tf_frame.empty()) {
+    usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
+  }
+  if (options.depth_unit) {
+    usage_error("--depth-unit needs depth images of a recording; depth-to-cloud has one for PNG");
+  }
+}
+
 std::optional<RecordedInput> recorded_input(const std::string& text,
                                             const RecordedOptions& options) {
-  std::optional<RecordingQuery> query = parse_recording_spec(text);
-  if (!query && is_recording(text)) query = RecordingQuery{text, {}, {}, 0.0, {}, {}};
+  std::optional<RecordingQuery> query = query_of(text);
   if (!query) return std::nullopt;
   query->frame = options.tf_frame;
   query->depth_unit = options.depth_unit;
@@ -68,6 +85,33 @@ Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& record
     scan.files = {text};
   }
   return scan;
+}
+
+const Scan& RecordedScans::scan(const std::string& text) {
+  const auto known = scans_.find(text);
+  if (known != scans_.end()) return known->second;
+  auto input = recorded_input(text, options);
+  Scan scan = scan_of_input(text, input);
+  if (input) {
+    scan.z_is_up = !options.tf_frame.empty();
+    recordings_.push_back(std::move(input->json));
+    lines_.push_back("recorded     " + input->line);
+    doubts_.insert(doubts_.end(), scan.doubts.begin(), scan.doubts.end());
+  }
+  return scans_.emplace(text, std::move(scan)).first->second;
+}
+
+void RecordedScans::add_to(Outcome& outcome) const {
+  if (recordings_.empty()) return;
+  outcome.json["recordings"] = recordings_;
+  outcome.lines.insert(outcome.lines.end(), lines_.begin(), lines_.end());
+  for (const Warning& doubt : doubts_) {
+    const auto& told = outcome.warnings;
+    if (std::none_of(told.begin(), told.end(),
+                     [&](const Warning& each) { return each.message == doubt.message; })) {
+      outcome.warnings.push_back(doubt);
+    }
+  }
 }
 
 MachinePosture recorded_posture(const RecordedInput& input) {

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +14,7 @@
 #include <excavplan/scans/scan_surface.hpp>
 
 #include "frame/arguments.hpp"
+#include "frame/tool.hpp"
 
 namespace excavplan::tools {
 
@@ -41,8 +44,31 @@ struct RecordedInput {
 std::optional<RecordedInput> recorded_input(const std::string& text,
                                             const RecordedOptions& options);
 
+/// Whether recorded_input() would read it.
+bool is_recorded(const std::string& text);
+/// @throws Error (bad_input) if options of recordings are given where none is read
+void require_recording(const RecordedOptions& options, bool is_there);
+
 /// The scan that `text` names: that of the recording, or of a file, which is left where it is.
 Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& recorded);
+
+/// Scans that the options of a run name, those of recordings each read once.
+class RecordedScans {
+ public:
+  RecordedOptions options;
+
+  /// @throws Error as recorded_input()
+  const Scan& scan(const std::string& text);
+  /// What was read of recordings, as `recordings` and in lines, with the doubts that are not told
+  /// yet; nothing if none was.
+  void add_to(Outcome& outcome) const;
+
+ private:
+  std::map<std::string, Scan> scans_;
+  std::vector<std::string> lines_;
+  std::vector<Warning> doubts_;
+  nlohmann::ordered_json recordings_ = nlohmann::ordered_json::array();
+};
 
 /// How the machine stood when a scan was recorded: of /joint_states the joints whose names hold
 /// swing, boom, arm or stick, and bucket. @throws Error (bad_file) if one of them is not there

@@ -3,6 +3,7 @@
 #include "inputs/scans.hpp"
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -46,7 +47,9 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
   auto input = recorded_input(side.text, frames.recorded);
   Scan scan = scan_of_input(side.text, input);
+  report.seen_at.reset();
   if (input) {
+    report.seen_at = input->scan.seen_at;
     if (frames.view.recorded) posture = recorded_posture(*input);
     report.in_counts = report.in_counts || (input->scan.is_counted && !frames.recorded.depth_unit);
     report.recordings.push_back(std::move(input->json));
@@ -92,16 +95,6 @@ Scan placed(const Side& side, const ScanFrames& frames, ScanReport& report) {
   Scan scan = scan_of(side, frames, report);
   place(side, frames, scan);
   return scan;
-}
-
-void require_recording(const ScanFrames& frames, const ScanReport& report) {
-  if (!report.recordings.empty()) return;
-  if (!frames.recorded.tf_frame.empty()) {
-    usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
-  }
-  if (frames.recorded.depth_unit) {
-    usage_error("--depth-unit needs depth images of a recording; depth-to-cloud has one for PNG");
-  }
 }
 
 }  // namespace
@@ -159,7 +152,7 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
                        frames.before_origin, frames.view.before},
                       frames, report);
   ScanPair pair = {std::move(first), placed(side_after(after, frames), frames, report)};
-  require_recording(frames, report);
+  require_recording(frames.recorded, !report.recordings.empty());
   if (frames.level) {
     Scan whole = pair.before;
     whole.area.reset();  // is in the levelled frame
@@ -174,8 +167,15 @@ Scan placed_scan(const std::string& after, const ScanFrames& frames, ScanReport&
   check(frames);
   if (frames.level) usage_error("--level needs BEFORE: it levels by the ground in that scan");
   Scan scan = placed(side_after(after, frames), frames, report);
-  require_recording(frames, report);
+  require_recording(frames.recorded, !report.recordings.empty());
   return scan;
+}
+
+double time_of(const std::optional<double>& told, const ScanReport& report) {
+  if (told) return *told;
+  if (report.seen_at) return *report.seen_at;
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(since_1970).count();
 }
 
 void ScanReport::add_to(Outcome& outcome) const {

@@ -59,6 +59,7 @@ struct ScanReport {
   nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
   bool in_counts = false;  ///< depths of a recording, taken for millimetres as no unit is given
   std::vector<std::string> lines;  ///< of both, for people
+  std::optional<double> seen_at;   ///< RecordedScan::seen_at of the last scan
 
   /// Into a tool's result, as `pose` and `recordings`.
   void add_to(Outcome& outcome) const;
@@ -72,6 +73,9 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
 /// The same of a scan after a dig alone, whose ground before is known.
 /// @throws Error also if it is to be levelled by a scan before
 Scan placed_scan(const std::string& after, const ScanFrames& frames, ScanReport& report);
+
+/// When a scan was made, since 1970-01-01 UTC [s]: as told, else as recorded, else now.
+double time_of(const std::optional<double>& told, const ScanReport& report);
 
 /// Runs `work`, and adds to an error about the frame of a scan the options that correct it.
 template <typename Work>

@@ -16,27 +16,10 @@
 namespace excavplan::tools {
 namespace {
 
-/// FILE:TOPIC@TIME of a file that is there: what reads recordings is not part of the tools that
-/// plan.
-void refuse_recording(const TerrainInput& terrain) {
-  namespace fs = std::filesystem;
-  const std::string& text = *terrain.cloud;
-  std::error_code ignored;
-  const std::size_t end = text.find_first_of(":@", 1);
-  if (end == text.npos || fs::exists(text, ignored) || !fs::exists(text.substr(0, end), ignored)) {
-    return;
-  }
-  throw Error(ErrorKind::bad_file, text + ": " + terrain.option +
-                                       " takes a cloud, no scan of a recording; inspect-cloud "
-                                       "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
-}
-
 /// @param read  what is asked for, from a scan
 template <typename Read>
 auto scanned(const TerrainInput& terrain, const Read& read) {
-  refuse_recording(terrain);
-  Scan scan;
-  scan.files = {*terrain.cloud};
+  Scan scan = terrain.scans->scan(*terrain.cloud);
   scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   if (!terrain.attitude.is_level()) {
@@ -52,13 +35,20 @@ auto scanned(const TerrainInput& terrain, const Read& read) {
 
 void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
   arguments.file("terrain", terrain.cloud,
-                 "cloud of the ground in the site frame (default: level)");
+                 std::string("cloud of the ground in the site frame, or a scan ") + recording_form +
+                     " (default: level)");
   arguments.text(
       "terrain-frame", "FRAME", terrain.frame,
       std::string("transforms the terrain cloud into the site frame, of which the origin "
                   "is on the swing axis at ground level, x forward, z up: ") +
           frame_forms);
   declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
+  declare_recorded(arguments, terrain.scans->options);
+}
+
+std::vector<std::string> terrain_options(std::vector<std::string> others) {
+  others.insert(others.end(), {"terrain", "terrain-frame", "unit", "tf-frame", "depth-unit"});
+  return others;
 }
 
 void declare_attitude(Arguments& arguments, TerrainInput& terrain) {
@@ -86,11 +76,14 @@ void declare_cell(Arguments& arguments, std::optional<double>& cell_size) {
                    "proportion to the bucket)");
 }
 
-Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
+Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size,
+               const std::optional<std::string>& surroundings) {
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");
   }
   if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
+  require_recording(terrain.scans->options, (terrain.cloud && is_recorded(*terrain.cloud)) ||
+                                                (surroundings && is_recorded(*surroundings)));
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);
     if (!terrain.cloud) return Site{undisturbed(flat_ground(extent, cell_size)), {}};

@@ -172,8 +172,8 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
 void declare_motion(Arguments& arguments, MotionInputs& inputs) {
   arguments.file(
       "surroundings", inputs.surroundings,
-      "earlier cloud of the ground around and under the machine, for what --terrain does "
-      "not see; in its frame and unit");
+      "earlier cloud, or scan of a recording, of the ground around and under the machine, for what "
+      "--terrain does not see; in its frame and unit");
   arguments.output("trajectory", inputs.file,
                    "write the joint motion: .csv, .json, .yaml or .yml (ROS 2 JointTrajectory), "
                    ".com3 (OPERA's JointCmd); - is standard output, as CSV");
@@ -229,7 +229,7 @@ MotionGround motion_ground(const MotionInputs& inputs, const Machine& machine,
 
 Site dig_site(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
               double cell_size) {
-  Site site = make_site(terrain, planning_extent(machine), cell_size);
+  Site site = make_site(terrain, planning_extent(machine), cell_size, inputs.surroundings);
   if (inputs.surroundings && terrain.cloud) {
     add_earlier_obstacles(surroundings_of(inputs, terrain), planning_extent(machine), site.ground);
   }

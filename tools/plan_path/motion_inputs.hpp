@@ -22,7 +22,7 @@ struct MotionInputs {
   std::string format = "ending";
   std::optional<std::string> joints;  ///< ours in their order, or by name those of the robot
   bool whole_cycle = false;
-  std::optional<std::string> surroundings;  ///< cloud, in frame and unit of the terrain's
+  std::optional<std::string> surroundings;  ///< as the terrain, in frame and unit of the terrain's
   MotionOptions options;
 };
 

@@ -43,12 +43,12 @@ void declare_plan_ground(Arguments& arguments, PlanGroundInputs& inputs) {
   declare_terrain(arguments, inputs.terrain);
   declare_attitude(arguments, inputs.terrain);
   declare_ground(arguments, inputs.state,
-                 {{"terrain", "terrain-frame", "unit", "attitude"},
+                 {terrain_options({"attitude"}),
                   "the planned dig as it is foretold; the payload is off the ground"});
   declare_site_folder(arguments, inputs.site,
                       "plan on the ground and for the density that estimate-density --site "
                       "remembers in this folder");
-  arguments.exclude("site", {"ground", "terrain", "terrain-frame", "unit", "attitude"});
+  arguments.exclude("site", terrain_options({"ground", "attitude"}));
 }
 
 void check(const PlanGroundInputs& inputs) {

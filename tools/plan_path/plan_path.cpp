@@ -30,6 +30,8 @@ const About about = {
      {"plan-path --density 40 --joints -40deg,90deg,40deg --whole-cycle --trajectory dig.yaml",
       "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
+     {"plan-path --density 40 --search --terrain run.mcap:/points@12s+2s --tf-frame base_link",
+      "on ground as a robot recorded it"},
      {"plan-path --density 40 --search --ground ground.tif", "on ground as simulate-dig left it"},
      {"plan-path --site pit --search", "on a site that estimate-density --site remembers"},
      {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
@@ -128,6 +130,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, on.density.percent, on.terrain, options.simulator};
   write_motion(inputs.motion, {machine, area, plan, options.search.objective}, outcome);
+  inputs.on.terrain.scans->add_to(outcome);
   if (on.given) describe(inputs.on.state, *on.given, outcome);
   if (on.site) on.site->describe(on.density, outcome);
   if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);

@@ -12,7 +12,9 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "live/page_server.hpp"
 #include "plan_site/estimate.hpp"
+#include "plan_site/job_feed.hpp"
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
@@ -38,7 +40,10 @@ void add_progress(const SiteJob& job, Outcome& outcome) {
   for (const std::string& line : progress_lines(progress)) outcome.lines.push_back(line);
 }
 
-void add_scan_warnings(const SiteJob& job, Outcome& outcome) {
+/// What became of a scan.
+void add_scan(const ScanReport& report, const SiteJob& job, Outcome& outcome) {
+  outcome.json["recordings"] = report.recordings;
+  outcome.lines.insert(outcome.lines.end(), report.lines.begin(), report.lines.end());
   for (const Warning& each : job.scan_warnings()) outcome.warnings.push_back(each);
   outcome.json["scan_taken"] =
       std::none_of(outcome.warnings.begin(), outcome.warnings.end(),
@@ -57,9 +62,10 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   save_order(inputs.folder, order.settings, order.files);
   const JobSettings kept = load_order(inputs.folder);
   if (was_begun) forget_scan(inputs.folder, kept);
-  SiteJob job = SiteJob::begin(inputs.folder, kept, order.first, time_of(inputs.scan));
+  const SiteJob job = SiteJob::begin(inputs.folder, kept, order.first.scan, order.first.time);
   Outcome outcome;
   outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
+  add_scan(order.first.report, job, outcome);
   add_progress(job, outcome);
   for (const std::string& note : order.settings.surface.notes) console.note("design: " + note);
   return outcome;
@@ -115,10 +121,10 @@ double work_in(const std::string& file, const Machine& machine) {
   return log.integral(log.whole);
 }
 
-StepReport report_of(const JobInputs& inputs) {
+StepReport report_of(const JobInputs& inputs, const std::optional<TimedScan>& scan) {
   StepReport report;
-  report.time = time_of(inputs.scan);
-  if (inputs.scan.scan) report.scan = scan_of(inputs.scan);
+  report.time = scan ? scan->time : time_of(inputs.scan.time, {});
+  if (scan) report.scan = scan->scan;
   report.payload_mass = inputs.payload_mass;
   if (inputs.energy) report.joint_work = *inputs.energy;
   if (inputs.loads) {
@@ -133,7 +139,9 @@ StepReport report_of(const JobInputs& inputs) {
 Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
   if (!inputs.step) usage_error("--step is missing: the step that was done, as next names it");
   SiteJob job = job_in(inputs.folder);
-  StepReport report = report_of(inputs);
+  std::optional<TimedScan> scan;
+  if (inputs.scan.scan) scan = scan_of(inputs.scan);
+  StepReport report = report_of(inputs, scan);
   const JobStep present = job.next();
   if (inputs.base) {
     report.base = parse_base(*inputs.base);
@@ -147,7 +155,7 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
   }
   if (is_present) {
     job.done(present.id, report);
-    if (report.scan) add_scan_warnings(job, outcome);
+    if (scan) add_scan(scan->report, job, outcome);
   } else {
     outcome.lines.push_back("step         " + std::to_string(*inputs.step) +
                             " is not the present one, " + std::to_string(present.id) +
@@ -159,14 +167,32 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
 
 Outcome work_scan(const JobInputs& inputs, Console& /*console*/) {
   SiteJob job = job_in(inputs.folder);
-  job.look(scan_of(inputs.scan), time_of(inputs.scan));
+  const TimedScan scan = scan_of(inputs.scan);
+  job.look(scan.scan, scan.time);
   Outcome outcome;
-  add_scan_warnings(job, outcome);
+  add_scan(scan.report, job, outcome);
   add_progress(job, outcome);
   return outcome;
 }
 
-Outcome work_show(const JobInputs& inputs, Console& /*console*/) {
+/// Shows a job in a browser while it goes on, until the tool is to stop.
+Outcome work_serve(const JobInputs& inputs, Console& console) {
+  if (inputs.report) usage_error("--serve excludes --report: the page is in the browser");
+  const ServeAddress address = parse_serve(*inputs.serve);
+  JobFeed feed(inputs.folder);
+  console.let_stop();
+  serve(feed, address,
+        {[&] { return console.stop_requested(); },
+         [&](const std::string& url) { console.note("the job is shown at " + url); }});
+  Outcome outcome;
+  const JobProgress& progress = feed.job().progress();
+  outcome.json["progress"] = progress_json(progress);
+  outcome.lines = progress_lines(progress);
+  return outcome;
+}
+
+Outcome work_show(const JobInputs& inputs, Console& console) {
+  if (inputs.serve) return work_serve(inputs, console);
   const JobSettings settings = load_order(inputs.folder);
   const SiteJob job = SiteJob::resume(inputs.folder, settings);
   Outcome outcome;

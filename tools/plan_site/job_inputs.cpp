@@ -60,6 +60,24 @@ void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
             "of a truckload hauled and tipped");
 }
 
+void declare_done(Arguments& arguments, JobInputs& inputs) {
+  arguments.option("step", inputs.step, "the step that was done, as next names it");
+  arguments.option("payload-mass", inputs.payload_mass, Quantity::mass,
+                   "that the dig lifted, by the scale");
+  Arguments::Entry energy;
+  energy.name = "energy-kj";
+  energy.placeholder = "NUMBER";
+  energy.help = "work of the joints over the whole cycle [kJ]";
+  energy.assign = [&inputs](const std::string& text) {
+    inputs.energy = 1000.0 * parse_quantity("--energy-kj", text, Quantity::ratio);
+  };
+  arguments.add(energy);
+  arguments.file("loads", inputs.loads,
+                 "instead a log of the joints over the whole cycle, CSV: torques and rates, "
+                 "pressures and piston speeds, or powers");
+  arguments.flag("stalled", inputs.stalled, "the machine could not finish the dig");
+}
+
 }  // namespace
 
 void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) {
@@ -91,23 +109,14 @@ void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) 
   });
   arguments.only_if({is({"show", "estimate"}), "it is of plan-site show and estimate"},
                     [&] { arguments.report(inputs.report); });
-  arguments.only_if({is({"done"}), "it is of plan-site done"}, [&] {
-    arguments.option("step", inputs.step, "the step that was done, as next names it");
-    arguments.option("payload-mass", inputs.payload_mass, Quantity::mass,
-                     "that the dig lifted, by the scale");
-    Arguments::Entry energy;
-    energy.name = "energy-kj";
-    energy.placeholder = "NUMBER";
-    energy.help = "work of the joints over the whole cycle [kJ]";
-    energy.assign = [&inputs](const std::string& text) {
-      inputs.energy = 1000.0 * parse_quantity("--energy-kj", text, Quantity::ratio);
-    };
-    arguments.add(energy);
-    arguments.file("loads", inputs.loads,
-                   "instead a log of the joints over the whole cycle, CSV: torques and rates, "
-                   "pressures and piston speeds, or powers");
-    arguments.flag("stalled", inputs.stalled, "the machine could not finish the dig");
+  arguments.only_if({is({"show"}), "it is of plan-site show"}, [&] {
+    arguments.text("serve", "[ADDRESS:]PORT", inputs.serve,
+                   "show the page of --report in a browser and keep it up to date while others go "
+                   "on with the job, until interrupted; only on this computer (127.0.0.1) unless "
+                   "another address is given");
   });
+  arguments.only_if({is({"done"}), "it is of plan-site done"},
+                    [&] { declare_done(arguments, inputs); });
 }
 
 }  // namespace excavplan::tools

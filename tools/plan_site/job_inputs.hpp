@@ -26,7 +26,7 @@ struct JobInputs {
   SiteScanInputs scan;
   std::optional<int> step;
   std::optional<double> payload_mass, energy;
-  std::optional<std::string> loads, base, report;
+  std::optional<std::string> loads, base, report, serve;
   bool stalled = false;
   EstimateInputs estimate;
 };

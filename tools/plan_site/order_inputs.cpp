@@ -3,7 +3,6 @@
 #include "plan_site/order_inputs.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -17,6 +16,7 @@
 #include "base/text.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/unit_inputs.hpp"
+#include "scans/scan_reading.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -58,7 +58,7 @@ bool is_raster(const std::string& file) {
 Surface surface_of(const Scan& scan, const Machine& machine) {
   const ScanOutline seen = outline(scan);
   if (!seen.extent) {
-    throw Error(ErrorKind::bad_file, "--scan: " + scan.files.front() + " holds no finite point");
+    throw Error(ErrorKind::bad_file, "--scan: " + name_of(scan) + " holds no finite point");
   }
   RasterOptions options;
   options.cell_size = std::max(usual_cell(machine), survey_cell({seen}));
@@ -154,12 +154,13 @@ Order finished(Order order, const std::string& machine_word) {
   return order;
 }
 
-Order order_of_site(const std::string& path, std::optional<double> density) {
-  const SiteBrief brief = read_site_brief(path);
+Order order_of_site(const OrderInputs& inputs, const SiteScanInputs& scan) {
+  const SiteBrief brief = read_site_brief(*inputs.site);
   Order order;
   order.settings = settings_of(brief, machine_named(brief.machine), {});  // finished() sets the law
-  order.settings.density_percent = density.value_or(brief.density.percent);
-  order.first = first_scan(brief.job);
+  order.settings.density_percent = inputs.density.value_or(brief.density.percent);
+  order.first.scan = first_scan(brief.job);
+  order.first.time = time_of(scan.time, {});
   return finished(std::move(order), brief.machine);
 }
 
@@ -167,27 +168,24 @@ Order order_of_site(const std::string& path, std::optional<double> density) {
 
 void declare_scan(Arguments& arguments, SiteScanInputs& inputs) {
   arguments.text("scan", "FILE", inputs.scan,
-                 "scan of the ground in the site's frame: a cloud, a grid (.asc, .tif), or "
-                 "FILE:TOPIC@TIME+SPAN of a recording");
+                 std::string("scan of the ground in the site's frame: a cloud, a grid (.asc, "
+                             ".tif), or one ") +
+                     recording_form);
   arguments.text("frame", "FRAME", inputs.frames.both,
                  std::string("transforms the scan into the site's frame: ") + frame_forms);
   declare_unit(arguments, "unit", inputs.frames.unit, "unit of the coordinates in the scan");
+  declare_recorded(arguments, inputs.frames.recorded);
   arguments.option("time", inputs.time, Quantity::time,
-                   "when it was scanned, since 1970-01-01 UTC (default: now)");
+                   "when it was scanned, since 1970-01-01 UTC (default: as recorded, else now)");
 }
 
-Scan scan_of(const SiteScanInputs& inputs) {
+TimedScan scan_of(const SiteScanInputs& inputs) {
   if (!inputs.scan) usage_error("--scan is missing: the ground as it is now");
-  ScanReport report;
-  Scan scan = placed_scan(*inputs.scan, inputs.frames, report);
-  if (is_raster(*inputs.scan)) scan.z_is_up = true;
-  return scan;
-}
-
-double time_of(const SiteScanInputs& inputs) {
-  if (inputs.time) return *inputs.time;
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(since_1970).count();
+  TimedScan taken;
+  taken.scan = placed_scan(*inputs.scan, inputs.frames, taken.report);
+  if (is_raster(*inputs.scan)) taken.scan.z_is_up = true;
+  taken.time = time_of(inputs.time, taken.report);
+  return taken;
 }
 
 BasePose parse_base(const std::string& text) {
@@ -235,7 +233,7 @@ void declare_order(Arguments& arguments, OrderInputs& inputs) {
 Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
   if (inputs.site) {
     if (scan.scan) usage_error("--site excludes --scan: the site names its first scan");
-    return order_of_site(*inputs.site, inputs.density);
+    return order_of_site(inputs, scan);
   }
   Order order;
   SiteSettings& site = order.settings.site;
@@ -243,7 +241,7 @@ Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
   order.settings.density_percent = inputs.density.value_or(order.settings.density_percent);
   order.settings.design = job_of(inputs, site.machine);
   order.first = scan_of(scan);
-  const Surface ground = surface_of(order.first, site.machine);
+  const Surface ground = surface_of(order.first.scan, site.machine);
   order.settings.surface = design_of(inputs, ground);
   return finished(std::move(order), inputs.machine);
 }
@@ -266,7 +264,7 @@ PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
     cut.site = order.settings.site;
     cut.density = read_site_brief(*inputs.site).density;
     cut.truck = order.settings.design.truck;
-    against(order.settings.surface, surface_of(order.first, cut.site.machine));
+    against(order.settings.surface, surface_of(order.first.scan, cut.site.machine));
     return cut;
   }
   if (!inputs.trench && !inputs.design) {
@@ -281,7 +279,7 @@ PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
     cut.shape = of_option("--trench", [&] { return shape_on_level_ground(words); });
     return cut;
   }
-  const Surface ground = surface_of(scan_of(scan), cut.site.machine);
+  const Surface ground = surface_of(scan_of(scan).scan, cut.site.machine);
   against(design_of(inputs, ground), ground);
   return cut;
 }

@@ -24,9 +24,15 @@ struct SiteScanInputs {
   std::optional<double> time;  ///< since 1970 [s]; else now
 };
 void declare_scan(Arguments& arguments, SiteScanInputs& inputs);
+
+/// A scan as it is taken in.
+struct TimedScan {
+  Scan scan;
+  double time = 0.0;  ///< when it was made, since 1970 [s]
+  ScanReport report;
+};
 /// @throws Error naming --scan if there is none
-Scan scan_of(const SiteScanInputs& inputs);
-double time_of(const SiteScanInputs& inputs);
+TimedScan scan_of(const SiteScanInputs& inputs);
 
 /// "X,Y,HEADING". @throws Error (bad_input) naming --base
 BasePose parse_base(const std::string& text);
@@ -48,7 +54,7 @@ void declare_order(Arguments& arguments, OrderInputs& inputs);
 struct Order {
   JobSettings settings;
   OrderFiles files;
-  Scan first;
+  TimedScan first;
 };
 /// @throws Error (bad_input), (bad_file) naming option, file, key and value
 Order order_of(const OrderInputs& inputs, const SiteScanInputs& scan);

@@ -22,6 +22,7 @@ const About about = {
      {"plan-site done job --step 7 --payload-mass 540 --energy-kj 160 --scan after.tif",
       "it was done, and this is the ground now"},
      {"plan-site show job --report job.html", "a page of all that was done"},
+     {"plan-site show job --serve 8080", "the same in a browser, while the job goes on"},
      {"plan-site estimate --trench 15x1x0.5m --soil clay --density 50",
       "what a trench is going to take, in level ground"},
      {"plan-site estimate --trench 15x1x0.5m --soil loam --fuel-price 1.6 --hour-price 90 "

@@ -64,8 +64,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_terrain(arguments, inputs.terrain);
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   declare_cell(arguments, inputs.cell_size);
-  declare_ground(arguments, inputs.ground,
-                 {{"terrain", "terrain-frame", "unit", "cell"}, "the dig, with the heap"});
+  declare_ground(arguments, inputs.ground, {terrain_options({"cell"}), "the dig, with the heap"});
   declare_base(arguments, inputs.ground);
   declare_scans(arguments, inputs.files.scans);
   inputs.blocks.declare(arguments);
@@ -130,6 +129,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (given) describe(inputs.ground, *given, outcome);
   outcome.warnings = std::move(site.warnings);
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+  inputs.terrain.scans->add_to(outcome);
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
   if (scene.dig.stall)
     outcome.warnings.emplace_back(WarningCode::stalled, describe(*scene.dig.stall));

@@ -66,7 +66,10 @@ const page = (() => {
     now: () => stepOf(player.time()),
     set: (time) => player.set(Math.round(time)),
   });
-  rows.forEach((row, i) => row.addEventListener("click", () => player.set(i + 1)));
+  list.addEventListener("click", (event) => {
+    const row = event.target.closest("tbody tr");
+    if (row) player.set(rows.indexOf(row) + 1);
+  });
 
   const key = element("charts-key");
   for (const [text, colour] of [
@@ -91,8 +94,22 @@ const page = (() => {
     charts.fit();
     drawFlat(shown);
   });
+  // After steps that came to those that there were.
+  const grow = (html) => {
+    const follows = shown === rows.length;
+    const body = document.querySelector("#steps tbody");
+    body.insertAdjacentHTML("beforeend", html);
+    rows.push(...[...body.children].slice(rows.length));
+    player.fit();
+    if (follows) player.set(lastStep);
+  };
   return {
     redraw,
+    grow,
+    rebuildCharts: () => {
+      charts.build();
+      charts.update();
+    },
     setTime: player.set,
     time: player.time,
     // Heights that are drawn now, row by row [m].

@@ -3,8 +3,8 @@
 
 // The job: its ground after each step, and the line along which it lies.
 
-const events = scene.events;
-const lastStep = events.length;
+const events = [];
+let lastStep = 0;
 const tolerance = scene.design.tolerance_m;
 const grid = {
   x0: scene.origin_m[0] + 0.5 * scene.cell_m,
@@ -21,11 +21,6 @@ const placeOfCell = (i) => [
 const firstHeights = summedNumbersOf(scene.before, cellCount); // mm
 const before = metresOf(firstHeights);
 const target = metresOf(summedNumbersOf(scene.target, cellCount));
-
-for (const { ground, seen } of events) {
-  if (ground) ground.numbers = numbersOf(ground.codes, ground.rows * ground.cols);
-  if (seen) seen.numbers = summedNumbersOf(seen.codes, seen.rows * seen.cols);
-}
 
 const forEachOfBlock = (block, visit) => {
   if (!block) return;
@@ -63,14 +58,9 @@ const groundAt = (() => {
 })();
 
 // Sums up to each step, the first before any.
-const sumsOf = (value) => {
-  const sums = [0];
-  for (const event of events) sums.push(sums[sums.length - 1] + (value(event) || 0));
-  return sums;
-};
-const minutes = sumsOf((event) => event.time_s / 60);
-const kilojoules = sumsOf((event) => event.energy_j / 1000);
-const volumesLeft = [scene.design_m3, ...events.map((event) => event.left_m3)];
+const minutes = [0];
+const kilojoules = [0];
+const volumesLeft = [scene.design_m3];
 const digsIn = (event) => event.what === "dig" || event.what === "finish";
 
 // Along the design and beside it, from its near end on its middle line.
@@ -104,21 +94,31 @@ const axis = (() => {
 })();
 
 // Where along the design each step dug, by what fell there; else where the step before did.
-const dugAt = (() => {
-  const list = [axis.length / 2];
-  for (const event of events) {
-    let weight = 0;
-    let sum = 0;
-    if (digsIn(event))
-      forEachOfBlock(event.ground, (i, change) => {
-        if (!(change < -5) || Number.isNaN(target[i])) return;
-        weight -= change;
-        sum -= change * axis.of(...placeOfCell(i))[0];
-      });
-    list.push(weight > 0 ? sum / weight : list[list.length - 1]);
-  }
-  return list;
-})();
+const dugAt = [axis.length / 2];
+const placeDug = (event) => {
+  let weight = 0;
+  let sum = 0;
+  if (digsIn(event))
+    forEachOfBlock(event.ground, (i, change) => {
+      if (!(change < -5) || Number.isNaN(target[i])) return;
+      weight -= change;
+      sum -= change * axis.of(...placeOfCell(i))[0];
+    });
+  return weight > 0 ? sum / weight : dugAt[lastStep];
+};
+
+const addStep = (event) => {
+  const { ground, seen } = event;
+  if (ground) ground.numbers = numbersOf(ground.codes, ground.rows * ground.cols);
+  if (seen) seen.numbers = summedNumbersOf(seen.codes, seen.rows * seen.cols);
+  minutes.push(minutes[lastStep] + (event.time_s || 0) / 60);
+  kilojoules.push(kilojoules[lastStep] + (event.energy_j || 0) / 1000);
+  volumesLeft.push(event.left_m3);
+  dugAt.push(placeDug(event));
+  events.push(event);
+  ++lastStep;
+};
+scene.events.forEach(addStep);
 
 const baseAt = (step) => (step > 0 ? events[step - 1].base : scene.design.start);
 

@@ -87,13 +87,16 @@ struct RecordedScan {
   /// messages, and where the frame of the messages is a leaf of the tree of transforms; not of a
   /// sensor that moved in between.
   Cloud cloud;
-  std::string topic;                    ///< of the messages
-  std::string frame;                    ///< of the points
-  std::string recorded_frame;           ///< of the first message
-  std::size_t messages = 0;             ///< that were used
-  bool is_counted = false;              ///< depths in counts, in the unit of the query or 1 mm
-  double first = 0.0;                   ///< time of the first of them [s]
-  double last = 0.0;                    ///< time of the last of them [s]
+  std::string topic;           ///< of the messages
+  std::string frame;           ///< of the points
+  std::string recorded_frame;  ///< of the first message
+  std::size_t messages = 0;    ///< that were used
+  bool is_counted = false;     ///< depths in counts, in the unit of the query or 1 mm
+  double first = 0.0;          ///< time of the first of them [s]
+  double last = 0.0;           ///< time of the last of them [s]
+  /// When the last of them was seen, since 1970-01-01 UTC [s]: by its stamp, or where that is over
+  /// a year off (ours), as of a clock that was not set, by the clock that recorded.
+  double seen_at = 0.0;
   ScanMerge merge = ScanMerge::single;  ///< what became of several messages
   /// Of each averaged point along its ray, from the scatter of the frames [m^2], NaN where fewer
   /// than two agree; empty unless averaged. What all frames have in common is not in it.
