@@ -38,13 +38,13 @@ class JobView {
   /// @throws Error (bad_file) as the constructor; the view is as it was then
   bool refresh();
 
-  const JobSettings& settings() const;
-  const JobHistory& history() const;  ///< as SiteJob::history()
+  const JobSettings& settings() const;  ///< as given
+  const JobHistory& history() const;    ///< as SiteJob::history()
   /// How often steps were taken back, so that the history is not the one before with more events.
   int rewritten() const;
   /// As SiteJob::progress(), by ground in whole millimetres.
   const JobProgress& progress() const;
-  JobBelief belief() const;
+  JobBelief belief() const;  ///< what the job has learnt
   /// That is planned and not done yet.
   const std::optional<JobStep>& present() const;
 
