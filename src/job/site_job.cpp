@@ -31,12 +31,7 @@ namespace {
 // Numbers of our own choice.
 constexpr std::size_t most_unseen = 5;         // digs between two scans
 constexpr std::size_t most_unseen_passes = 2;  // likewise of passes
-constexpr double allowance = 0.5;       // over the design, in tolerances: what is too deep stays so
-constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
-constexpr double most_allowance = 0.8;  // of passes to that end, likewise
-constexpr double floor_reading_sd = 0.005;  // of that middle at one place [m]
-constexpr double least_allowance = -0.4;    // likewise
-constexpr double most_of_floor = 0.5;  // over the design, in tolerances, where passes came so far
+constexpr double allowance = 0.5;  // over the design, in tolerances: what is too deep stays so
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 16;              // along the floor from one station
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
@@ -51,7 +46,7 @@ constexpr double most_carried = 0.4;         // of a heaped bucket, through a pa
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
-constexpr double most_off = 0.038;           // share of cells that may stay off the tolerance
+constexpr double most_off = 0.045;           // share of cells that may stay off the tolerance
 constexpr double least_high = 0.005;         // of those that are too high, which passes can mend
 constexpr double heap_share = 1.6;           // of the tolerance: of such cells hardly any may stay
 constexpr double most_heaps = 0.006;         // share of these
@@ -61,15 +56,6 @@ constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no
 constexpr double after_stall = 0.7;          // of the depth of a cut
 constexpr double after_success = 1.1;        // likewise
 constexpr double shallowest_cut = 0.06;      // [m]
-
-/// Cells that do not lie as designed.
-struct Flaws {
-  int cells = 0;  ///< of all that were looked at
-  int off = 0;    ///< beyond the tolerance
-  int low = 0;    ///< of these below the design
-  int high = 0;   ///< above it, as the mean of themselves and their neighbours
-  int heaps = 0;  ///< likewise surely so high that hardly any may stay
-};
 
 /// Whether all are dug from one line.
 bool is_one_group(const std::vector<JobStation>& stations) {
@@ -169,12 +155,9 @@ struct SiteJob::State {
   bool wants_passes(const BasePose& base) const;
   bool is_dug_out(const BasePose& base) const;
   template <typename Visit>
-  void for_each_in_reach(const BasePose& base, Visit visit, bool and_beyond = false) const;
-  Flaws flaws(const BasePose& base, bool and_beyond) const;
+  void for_each_in_reach(const BasePose& base, Visit visit) const;
   void learn_floor();
   std::optional<double> middle_of_floor() const;
-  double usual_allowance() const;
-  double allowance_of_passes() const;
   void foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const;
   bool check_motion(JobStep& step);
   bool may_keep(double more) const;
@@ -235,13 +218,16 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   task.is_wide = stations[record.station].is_wide;
   task.has_faces = frame.is_battered;
   task.keeps_load = finishing && may_keep(0.0);
-  task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
+  const double tolerance = settings.design.tolerance;
+  task.allowance =
+      finishing ? record.learning.allowance_of_passes(middle_of_floor().value_or(0.0), tolerance)
+                : allowance * tolerance;
   task.density_percent = settings.density_percent;
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
   task.carried = finishing && record.carried ? record.carried->volume : 0.0;
-  task.slack = 0.5 * settings.design.tolerance;
+  task.slack = 0.5 * tolerance;
   return task;
 }
 
@@ -379,9 +365,9 @@ BasePose SiteJob::State::base_of(const JobStation& station) const {
   return base_at(frame_at(station), station, ground.expected(), settings.site.machine);
 }
 
-/// The cells that count and are dug from there, or also those beyond, from where it came.
+/// The cells that count and are dug from there.
 template <typename Visit>
-void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit, bool and_beyond) const {
+void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const {
   const JobStation station = here();
   const JobFrame line = frame_at(station);
   const Eigen::Vector2d at = line.of({base.x, base.y});
@@ -390,42 +376,36 @@ void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit, bool a
   for_each_cell(map.counts, [&](Cell cell) {
     if (!map.counts(cell.row, cell.col)) return;
     const Eigen::Vector2d place = line.of({map.target.x(cell.col), map.target.y(cell.row)}) - at;
+    if (place.x() < range.near || place.x() > range.far) return;
     const double along = place.x() + at.x();
-    if (place.x() < range.near || along < station.shapes_from) return;
-    if (!and_beyond && (place.x() > range.far || along > station.shapes_to)) return;
+    if (along < station.shapes_from || along > station.shapes_to) return;
     if (place.y() < station.lanes.front() - at.y() - half) return;
     if (place.y() <= station.lanes.back() - at.y() + half) visit(cell);
   });
 }
 
-/// Of what is within reach, or also beyond.
-Flaws SiteJob::State::flaws(const BasePose& base, bool and_beyond) const {
+/// Whether too much of what is within reach lies off the design, and passes can mend it.
+bool SiteJob::State::wants_passes(const BasePose& base) const {
   const double tolerance = settings.design.tolerance;
-  Flaws found;
-  const auto add = [&](Cell cell) {
+  int cells = 0;
+  int low = 0;
+  int off = 0;    // low or high
+  int high = 0;   // likewise, as the mean of a cell and its neighbours
+  int heaps = 0;  // surely so high that hardly any may stay
+  for_each_in_reach(base, [&](Cell cell) {
     const double error = above_design(map, ground.expected(), cell);
     if (std::isnan(error)) return;
     const auto around = above_design_around(map, ground.expected(), cell);
     const double mean =
         std::accumulate(around.begin(), around.end(), 0.0) / static_cast<double>(around.size());
-    ++found.cells;
-    if (std::abs(error) > tolerance) ++found.off;
-    if (error < -tolerance) ++found.low;
-    if (mean > tolerance) ++found.high;
-    if (mean - ground.sd_at(cell) > heap_share * tolerance) ++found.heaps;
-  };
-  for_each_in_reach(base, add, and_beyond);
-  return found;
-}
-
-/// Whether too much of what was worked so far lies off the design, and passes from here can mend
-/// it: what lay better than it must from earlier places need not be mended from this one.
-bool SiteJob::State::wants_passes(const BasePose& base) const {
-  const Flaws near = flaws(base, false);
-  if (near.heaps > most_heaps * near.cells) return true;
-  if (!(near.high > std::max<double>(least_high * near.cells, near.low))) return false;
-  const Flaws worked = stations[record.station].is_wide ? near : flaws(base, true);
-  return worked.off > most_off * worked.cells;
+    ++cells;
+    if (std::abs(error) > tolerance) ++off;
+    if (error < -tolerance) ++low;
+    if (mean > tolerance) ++high;
+    if (mean - ground.sd_at(cell) > heap_share * tolerance) ++heaps;
+  });
+  if (heaps > most_heaps * cells) return true;
+  return off > most_off * cells && high > std::max<double>(least_high * cells, low);
 }
 
 /// Whether little of what is within reach still stands.
@@ -454,24 +434,8 @@ std::optional<double> SiteJob::State::middle_of_floor() const {
 /// How the ground lies that passes from here left.
 void SiteJob::State::learn_floor() {
   if (record.passes_here == 0 || stations[record.station].is_lookout()) return;
-  const auto lies = middle_of_floor();
-  if (!lies || *lies > most_of_floor * settings.design.tolerance)
-    return;  // passes did not come so far
-  record.learning.floor.learn(*lies - usual_allowance(), floor_reading_sd * floor_reading_sd);
-}
-
-/// Of passes, so that the middle of what they leave lies where it should.
-double SiteJob::State::usual_allowance() const {
-  const double tolerance = settings.design.tolerance;
-  return std::clamp(middle * tolerance - record.learning.floor.mean, least_allowance * tolerance,
-                    most_allowance * tolerance);
-}
-
-/// As much higher as it lies too deep already: the next pass is for what stands above it alone.
-double SiteJob::State::allowance_of_passes() const {
-  const double tolerance = settings.design.tolerance;
-  const double too_deep = middle * tolerance - middle_of_floor().value_or(0.0);
-  return std::min(usual_allowance() + std::max(0.0, too_deep), most_allowance * tolerance);
+  if (const auto lies = middle_of_floor())
+    record.learning.learn_floor(*lies, settings.design.tolerance);
 }
 
 JobStep SiteJob::State::decide() {
