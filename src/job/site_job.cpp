@@ -46,7 +46,7 @@ constexpr double most_carried = 0.4;         // of a heaped bucket, through a pa
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
-constexpr double most_off = 0.045;           // share of cells that may stay off the tolerance
+constexpr double most_off = 0.042;           // share of cells that may stay off the tolerance
 constexpr double least_high = 0.005;         // of those that are too high, which passes can mend
 constexpr double heap_share = 1.6;           // of the tolerance: of such cells hardly any may stay
 constexpr double most_heaps = 0.006;         // share of these
@@ -388,24 +388,22 @@ void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const 
 bool SiteJob::State::wants_passes(const BasePose& base) const {
   const double tolerance = settings.design.tolerance;
   int cells = 0;
+  int high = 0;
   int low = 0;
-  int off = 0;    // low or high
-  int high = 0;   // likewise, as the mean of a cell and its neighbours
-  int heaps = 0;  // surely so high that hardly any may stay
+  int heaps = 0;
   for_each_in_reach(base, [&](Cell cell) {
-    const double error = above_design(map, ground.expected(), cell);
-    if (std::isnan(error)) return;
+    if (std::isnan(above_design(map, ground.expected(), cell))) return;
     const auto around = above_design_around(map, ground.expected(), cell);
     const double mean =
         std::accumulate(around.begin(), around.end(), 0.0) / static_cast<double>(around.size());
+    const double sure = mean - ground.sd_at(cell);
     ++cells;
-    if (std::abs(error) > tolerance) ++off;
-    if (error < -tolerance) ++low;
-    if (mean > tolerance) ++high;
-    if (mean - ground.sd_at(cell) > heap_share * tolerance) ++heaps;
+    if (sure > tolerance) ++high;
+    if (mean < -tolerance) ++low;
+    if (sure > heap_share * tolerance) ++heaps;
   });
   if (heaps > most_heaps * cells) return true;
-  return off > most_off * cells && high > std::max<double>(least_high * cells, low);
+  return high + low > most_off * cells && high > std::max<double>(least_high * cells, low);
 }
 
 /// Whether little of what is within reach still stands.

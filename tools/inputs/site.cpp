@@ -94,7 +94,7 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
 }
 
 void add_earlier_obstacles(const TerrainInput& earlier, const Rectangle& extent, Terrain& ground) {
-  const Terrain present = ground;
+  Terrain present = ground;
   ground = scanned(earlier, [&](const Scan& scan) {
     try {
       return with_earlier_obstacles(

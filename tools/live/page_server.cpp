@@ -225,7 +225,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::tcp_stream stream_;
   Server& server_;
   std::uint64_t number_;
-  beast::flat_buffer buffer_{2 * most_head_bytes};
+  beast::flat_buffer buffer_{std::size_t{2} * most_head_bytes};
   http::request_parser<http::empty_body> parser_;
   std::string text_;  ///< that is written
   bool has_body_ = true;
