@@ -46,9 +46,9 @@ constexpr double most_carried = 0.4;         // of a heaped bucket, through a pa
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
-constexpr double most_off = 0.042;           // share of cells that may stay off the tolerance
-constexpr double least_high = 0.005;         // of those that are too high, which passes can mend
-constexpr double heap_share = 1.6;           // of the tolerance: of such cells hardly any may stay
+constexpr double high_share = 1.0;           // of the tolerance: higher cells call for a pass
+constexpr double most_high = 0.03;           // share of cells that may stay so
+constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double well_seen = 0.992;          // of it, so that no more is looked for
 constexpr int most_softer = 4;  // deviations of the strength below its mean that are tried
@@ -384,26 +384,23 @@ void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const 
   });
 }
 
-/// Whether too much of what is within reach lies off the design, and passes can mend it.
+/// Whether too much of what is within reach lies above the design.
 bool SiteJob::State::wants_passes(const BasePose& base) const {
   const double tolerance = settings.design.tolerance;
-  int cells = 0;
+  int count = 0;
   int high = 0;
-  int low = 0;
   int heaps = 0;
   for_each_in_reach(base, [&](Cell cell) {
     if (std::isnan(above_design(map, ground.expected(), cell))) return;
     const auto around = above_design_around(map, ground.expected(), cell);
-    const double mean =
+    const double above =
         std::accumulate(around.begin(), around.end(), 0.0) / static_cast<double>(around.size());
-    const double sure = mean - ground.sd_at(cell);
-    ++cells;
-    if (sure > tolerance) ++high;
-    if (mean < -tolerance) ++low;
+    const double sure = above - ground.sd_at(cell);
+    ++count;
+    if (sure > high_share * tolerance) ++high;
     if (sure > heap_share * tolerance) ++heaps;
   });
-  if (heaps > most_heaps * cells) return true;
-  return high + low > most_off * cells && high > std::max<double>(least_high * cells, low);
+  return high > most_high * count || heaps > most_heaps * count;
 }
 
 /// Whether little of what is within reach still stands.
