@@ -24,12 +24,6 @@ constexpr double least_share_left = 0.05;  // of a variance after one
 constexpr double least_doubt = 0.25;       // about ln of the strength, from place to place
 constexpr double least_fill = 0.3;         // of a bucket that teaches anything
 constexpr double least_energy = 0.1;       // of the dig in that of its cycle, to tell its own
-// Over the design, in tolerances.
-constexpr double middle = -0.05;            // of what passes leave
-constexpr double least_allowance = -0.4;    // where they aim to that end
-constexpr double most_allowance = 0.8;      // likewise
-constexpr double most_of_floor = 0.5;       // where they came so far that it tells how they lie
-constexpr double floor_reading_sd = 0.005;  // of the middle at one place [m]
 
 void learn_ratio(LearntNumber& ratio, double& scatter, double reading) {
   ratio.variance += drift * drift;
@@ -106,22 +100,6 @@ void JobLearning::learn(const PlannedDig& dig, const StrengthSigns& signs,
       strength.learn(strength.mean + ratio / signs.energy_share, sd * sd);
     }
   }
-}
-
-void JobLearning::learn_floor(double lies, double tolerance) {
-  if (lies > most_of_floor * tolerance) return;
-  const double aimed = usual_allowance(tolerance);
-  floor.learn(lies - aimed, floor_reading_sd * floor_reading_sd);
-}
-
-double JobLearning::usual_allowance(double tolerance) const {
-  return std::clamp(middle * tolerance - floor.mean, least_allowance * tolerance,
-                    most_allowance * tolerance);
-}
-
-double JobLearning::allowance_of_passes(double lies, double tolerance) const {
-  const double too_deep = std::max(0.0, middle * tolerance - lies);
-  return std::min(usual_allowance(tolerance) + too_deep, most_allowance * tolerance);
 }
 
 double JobLearning::strength_factor(int deviations) const {

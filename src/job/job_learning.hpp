@@ -56,11 +56,6 @@ struct JobLearning {
 
   ForetoldStep foretell(const PlannedDig& dig) const;
   void learn(const PlannedDig& dig, const StrengthSigns& signs, const StepReport& report);
-  /// By where the middle of the floor lies over the design after passes at a place [m].
-  void learn_floor(double lies, double tolerance);
-  /// Over the design, where passes aim so that what they leave lies where it should; as much
-  /// higher where it lies deeper already, for what stands on it alone [m].
-  double allowance_of_passes(double lies, double tolerance) const;
   /// To other ground.
   void move() { strength.variance += place_variance; }
 
@@ -69,9 +64,6 @@ struct JobLearning {
   /// So many deviations above what is expected.
   double strength_factor(int deviations = 0) const;
   double hard_factor() const;  ///< that a dig should not stall at
-
- private:
-  double usual_allowance(double tolerance) const;
 };
 
 }  // namespace excavplan

@@ -31,7 +31,12 @@ namespace {
 // Numbers of our own choice.
 constexpr std::size_t most_unseen = 5;         // digs between two scans
 constexpr std::size_t most_unseen_passes = 2;  // likewise of passes
-constexpr double allowance = 0.5;  // over the design, in tolerances: what is too deep stays so
+constexpr double allowance = 0.5;       // over the design, in tolerances: what is too deep stays so
+constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
+constexpr double most_allowance = 0.8;  // of passes to that end, likewise
+constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
+constexpr double least_allowance = -0.4;     // likewise
+constexpr double most_of_floor = 0.5;        // in tolerances: else passes did not come so far
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 16;              // along the floor from one station
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
@@ -157,7 +162,7 @@ struct SiteJob::State {
   template <typename Visit>
   void for_each_in_reach(const BasePose& base, Visit visit) const;
   void learn_floor();
-  std::optional<double> middle_of_floor() const;
+  double allowance_of_passes() const;
   void foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const;
   bool check_motion(JobStep& step);
   bool may_keep(double more) const;
@@ -218,16 +223,13 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   task.is_wide = stations[record.station].is_wide;
   task.has_faces = frame.is_battered;
   task.keeps_load = finishing && may_keep(0.0);
-  const double tolerance = settings.design.tolerance;
-  task.allowance =
-      finishing ? record.learning.allowance_of_passes(middle_of_floor().value_or(0.0), tolerance)
-                : allowance * tolerance;
+  task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
   task.carried = finishing && record.carried ? record.carried->volume : 0.0;
-  task.slack = 0.5 * tolerance;
+  task.slack = 0.5 * settings.design.tolerance;
   return task;
 }
 
@@ -414,23 +416,26 @@ bool SiteJob::State::is_dug_out(const BasePose& base) const {
   return high <= most_undug * count;
 }
 
-/// Of what is within reach and seen, over the design [m]; nothing if it is too little.
-std::optional<double> SiteJob::State::middle_of_floor() const {
+/// How the ground lies that passes from here left.
+void SiteJob::State::learn_floor() {
+  if (record.passes_here == 0 || stations[record.station].is_lookout()) return;
   std::vector<double> above;
   for_each_in_reach(record.base, [&](Cell cell) {
     const double error = above_design(map, ground.expected(), cell);
     if (!std::isnan(error) && !std::isnan(ground.seen()(cell.row, cell.col)))
       above.push_back(error);
   });
-  if (above.size() < least_of_floor) return std::nullopt;
-  return median(above);
+  if (above.size() < least_of_floor) return;
+  const double lies = median(above);
+  if (std::abs(lies) > most_of_floor * settings.design.tolerance) return;  // it is not in shape
+  record.learning.floor.learn(lies - allowance_of_passes(), floor_reading_sd * floor_reading_sd);
 }
 
-/// How the ground lies that passes from here left.
-void SiteJob::State::learn_floor() {
-  if (record.passes_here == 0 || stations[record.station].is_lookout()) return;
-  if (const auto lies = middle_of_floor())
-    record.learning.learn_floor(*lies, settings.design.tolerance);
+/// So that the middle of what they leave lies where it should.
+double SiteJob::State::allowance_of_passes() const {
+  const double tolerance = settings.design.tolerance;
+  return std::clamp(middle * tolerance - record.learning.floor.mean, least_allowance * tolerance,
+                    most_allowance * tolerance);
 }
 
 JobStep SiteJob::State::decide() {

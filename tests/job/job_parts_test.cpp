@@ -605,31 +605,6 @@ TEST(LearntNumber, ABoundMovesItByTheMomentsOfItsPosterior) {
   }
 }
 
-TEST(JobLearning, PassesAimHigherAfterAFloorThatLiesTooDeep) {
-  constexpr double tolerance = 0.03;
-  JobLearning learning;
-  const double before = learning.allowance_of_passes(0.0, tolerance);
-  learning.learn_floor(-0.02, tolerance);  // passes left it 18.5 mm lower than they should
-  const double after = learning.allowance_of_passes(0.0, tolerance);
-  EXPECT_GT(after, before + 0.01);
-  EXPECT_LT(after, before + 0.0185);
-}
-
-TEST(JobLearning, AFloorToWhichPassesDidNotComeTellsNothing) {
-  JobLearning learning;
-  const double before = learning.allowance_of_passes(0.0, 0.03);
-  learning.learn_floor(0.016, 0.03);
-  EXPECT_EQ(learning.allowance_of_passes(0.0, 0.03), before);
-}
-
-TEST(JobLearning, WhereTheFloorLiesTooDeepPassesAimAsMuchHigher) {
-  const JobLearning learning;
-  const double aim = learning.allowance_of_passes(-0.0015, 0.03);
-  EXPECT_EQ(learning.allowance_of_passes(0.01, 0.03), aim);
-  EXPECT_NEAR(learning.allowance_of_passes(-0.0115, 0.03), aim + 0.01, 1e-12);
-  EXPECT_NEAR(learning.allowance_of_passes(-0.1, 0.03), 0.8 * 0.03, 1e-12);
-}
-
 TEST(LearntNumber, ManyStallsDoNotFreezeIt) {
   LearntNumber number = {0.0, 0.4};
   for (int i = 0; i < 6; ++i) number.learn_bound(number.mean + number.sd(), true, 0.06);
