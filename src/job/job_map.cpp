@@ -112,7 +112,8 @@ Scan first_scan(const JobDesign& design) {
 ArrayXXd raised(const ArrayXXd& design, const HeightMap& grid, const Eigen::Vector3d& over) {
   ArrayXXd heights = design;
   for_each_cell(design, [&](Cell at) {
-    heights(at.row, at.col) += over.x() + over.y() * grid.x(at.col) + over.z() * grid.y(at.row);
+    double& height = heights(at.row, at.col);
+    height = height + over.x() + over.y() * grid.x(at.col) + over.z() * grid.y(at.row);
   });
   return heights;
 }
