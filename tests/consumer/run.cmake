@@ -44,15 +44,15 @@ function(check_program program)
   endif()
 endfunction()
 
-# The tools find their libraries by themselves, and plan-path loads none for recordings.
+# The tools find their libraries by themselves; one that reads no scans loads none for recordings.
 function(check_tool prefix)
   run(${hidden} env -i ${prefix}/bin/plan-path --density 40 --json --quiet)
   if(NOT output MATCHES "\"source\": *\"library\"")
     message(FATAL_ERROR "${prefix}/bin/plan-path: ${output}")
   endif()
-  run(ldd ${prefix}/bin/plan-path)
+  run(ldd ${prefix}/bin/build-path-library)
   if(output MATCHES "libsqlite3|liblz4|libzstd|libbz2")
-    message(FATAL_ERROR "${prefix}/bin/plan-path:\n${output}")
+    message(FATAL_ERROR "${prefix}/bin/build-path-library:\n${output}")
   endif()
 endfunction()
 
