@@ -9,28 +9,16 @@ Exit code 77, skipped, where Chromium, its driver or python3-selenium is not ins
 import json
 import math
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-    from selenium.webdriver.remote.remote_connection import RemoteConnection
-except ImportError:
-    print("skipped: python3-selenium is not installed")
-    sys.exit(77)
-
-DRIVER = shutil.which("chromedriver")
-if not DRIVER or not shutil.which("chromium"):
-    print("skipped: chromium or chromium-driver is not installed")
-    sys.exit(77)
+sys.dont_write_bytecode = True
+from chromium import browser  # noqa: E402  first, as it may skip the test
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
 
 BIN, DATA = sys.argv[1:3]
 FOLDER = tempfile.TemporaryDirectory(prefix="excavplan-report-")
@@ -85,15 +73,6 @@ def read_grid(name):
         rows = [[float(z) for z in line.split()] for line in file]
     values = {key.lower(): float(value) for key, value in head}
     return rows[::-1], (values["xllcorner"], values["yllcorner"]), values["cellsize"]
-
-
-def browser(*arguments):
-    options = Options()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", *arguments):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    RemoteConnection.set_timeout(60)  # of a command, for a page that does not come to rest [s]
-    return webdriver.Chrome(service=Service(DRIVER), options=options)
 
 
 def tip_of(machine, joints):

@@ -10,26 +10,15 @@ was built without what serves.
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.support.ui import WebDriverWait
-except ImportError:
-    print("skipped: python3-selenium is not installed")
-    sys.exit(77)
-
-DRIVER = shutil.which("chromedriver")
-if not DRIVER or not shutil.which("chromium"):
-    print("skipped: chromium or chromium-driver is not installed")
-    sys.exit(77)
+sys.dont_write_bytecode = True
+from chromium import browser  # noqa: E402  first, as it may skip the test
+from selenium.webdriver.support.ui import WebDriverWait  # noqa: E402
 
 BIN, DATA = sys.argv[1:3]
 FOLDER = tempfile.TemporaryDirectory(prefix="excavplan-served-")
@@ -68,12 +57,7 @@ class Served(unittest.TestCase):
             print("skipped:", line)
             sys.exit(77)
         self.url = re.search(r"http://\S+", line)[0]
-        options = Options()
-        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
-                         "--use-angle=swiftshader", "--enable-unsafe-swiftshader"):
-            options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+        self.driver = browser("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
     def tearDown(self):
         self.driver.quit()
