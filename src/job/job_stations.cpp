@@ -92,14 +92,16 @@ bool wants_benches(const JobFrame& frame, const std::vector<double>& lanes) {
   return !runs_on_faces && wide_groups_of(lanes).size() > 1;
 }
 
-/// Passes also run between lanes, over the ridges that each leaves in the other, and a little off
-/// the walls: one that stands too far inside would stop them.
-std::vector<double> lanes_of(const JobStation& station, bool finishing) {
+/// Passes also run a little off the walls, as one that stands too far inside would stop them; and
+/// between lanes over the ridges there, unless these lie within the next lane: such a pass would
+/// only push soil against both walls.
+std::vector<double> lanes_of(const JobStation& station, double bucket_width, bool finishing) {
   if (!finishing) return station.lanes;
   if (!station.passes.empty()) return station.passes;
   std::vector<double> all;
   for (const double lane : station.lanes) {
-    if (!all.empty()) all.push_back(0.5 * (all.back() + lane));
+    const bool is_within = !all.empty() && lane - all.back() < 0.5 * bucket_width;
+    if (!all.empty() && !is_within) all.push_back(0.5 * (all.back() + lane));
     all.push_back(lane);
   }
   if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
@@ -253,7 +255,7 @@ std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& statio
   if (finishing) range.far = std::min(range.far, shaped);
   std::vector<WorkLine> lines;
   Eigen::AlignedBox1d fan;
-  for (const double lane : lanes_of(station, finishing)) {
+  for (const double lane : lanes_of(station, machine.bucket.width_outside, finishing)) {
     const double beside = lane - at.y();
     if (!station.is_wide || std::abs(beside) <= widest_straight) {
       lines.push_back({0.0, beside, range.near, range.far, range.ends_at_wall});

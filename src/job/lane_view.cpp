@@ -147,11 +147,12 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.gained += gained;
     if (surface_.x(cell.col) > rules.end) change.at_end += gained;
-    // What a pass pushes aside is for the next one.
     const bool is_under = cell.row >= first_row_ && cell.row < end_row_;
+    const double level = target + slack;
+    const double lowered = area * (std::max(0.0, before - level) - std::max(0.0, after - level));
+    if (!is_under) change.pushed -= lowered;
     if (is_under && counts_(cell.row, cell.col)) {
-      const double level = target + slack;
-      change.cleared += area * (std::max(0.0, before - level) - std::max(0.0, after - level));
+      change.cleared += lowered;
       const auto is_off = [&](double z) { return std::abs(z - target) > rules.tolerance; };
       change.finished += area * (is_off(before) - is_off(after));
       change.shaped += area * (std::max(0.0, std::abs(before - target) - slack) -

@@ -24,6 +24,7 @@ struct DigStart {
 struct ShapeChange {
   double shaped = 0.0;    ///< less that is out of shape, of what counts under the bucket [m^3]
   double cleared = 0.0;   ///< of what lies above the design there [m^3]
+  double pushed = 0.0;    ///< risen above it beside the bucket [m^3]
   double finished = 0.0;  ///< brought within the tolerance, less what left it, there [m^2]
   double gained = 0.0;    ///< of what lies above the design [m^3]
   double at_end = 0.0;    ///< of that, at the end of the work [m^3]

@@ -38,7 +38,7 @@ constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
 constexpr double least_allowance = -0.4;     // likewise
 constexpr double most_of_floor = 0.5;        // in tolerances: else passes did not come so far
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
-constexpr int most_passes = 16;              // along the floor from one station
+constexpr int most_passes = 8;               // along the floor from one station
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
@@ -52,7 +52,7 @@ constexpr double least_mass = 15.0;          // in a bucket that was worth it [k
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
 constexpr double high_share = 1.0;           // of the tolerance: higher cells call for a pass
-constexpr double most_high = 0.03;           // share of cells that may stay so
+constexpr double most_off = 0.042;           // share of cells that may stay so, or too low
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double well_seen = 0.992;          // of it, so that no more is looked for
@@ -219,6 +219,7 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
   task.lines = work_lines(line, here(), settings.site.machine, at, finishing);
   task.may_risk = record.progress.stalls == 0;
+  task.may_bite = !is_dug_out(record.base);
   task.finishing = finishing;
   task.is_wide = stations[record.station].is_wide;
   task.has_faces = frame.is_battered;
@@ -391,6 +392,7 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
   const double tolerance = settings.design.tolerance;
   int count = 0;
   int high = 0;
+  int low = 0;
   int heaps = 0;
   for_each_in_reach(base, [&](Cell cell) {
     if (std::isnan(above_design(map, ground.expected(), cell))) return;
@@ -400,9 +402,10 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
     const double sure = above - ground.sd_at(cell);
     ++count;
     if (sure > high_share * tolerance) ++high;
+    if (-above > tolerance) ++low;
     if (sure > heap_share * tolerance) ++heaps;
   });
-  return high > most_high * count || heaps > most_heaps * count;
+  return high + low > most_off * count || heaps > most_heaps * count;
 }
 
 /// Whether little of what is within reach still stands.
@@ -427,7 +430,7 @@ void SiteJob::State::learn_floor() {
   });
   if (above.size() < least_of_floor) return;
   const double lies = median(above);
-  if (std::abs(lies) > most_of_floor * settings.design.tolerance) return;  // it is not in shape
+  if (lies > most_of_floor * settings.design.tolerance) return;  // it is not in shape
   record.learning.floor.learn(lies - allowance_of_passes(), floor_reading_sd * floor_reading_sd);
 }
 

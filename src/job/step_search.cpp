@@ -42,6 +42,7 @@ constexpr double least_pass = 0.55;    // of a finishing pass, over the length o
 constexpr double shortest_pass = 0.6;  // [m]
 constexpr double in_shape_over = 0.5;  // so far the ground is in shape after it [m]
 constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
+constexpr double pushed_price = 0.5;   // of soil that a pass pushes beside it, likewise
 constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
 constexpr double same_turn = 0.03;     // likewise [rad]
@@ -51,10 +52,11 @@ constexpr double least_on_bench = 0.3;  // likewise where more is below that can
 constexpr double least_at_wall = 0.06;  // likewise, counting what lies there twice
 constexpr double least_lifted = 0.012;  // by a finishing pass [m^3]
 constexpr double standing = 0.05;       // of a bank in a lane over the mean ground of the lane [m]
-constexpr double least_finished = 0.035;     // that a pass brings within the tolerance [m^2]
+constexpr double least_finished = 0.06;      // that a pass brings within the tolerance [m^2]
 constexpr double least_cleared = 0.015;      // or clears, for later ones [m^3]
 constexpr double wall_from = 0.5;            // before the end, soil that later digs would leave [m]
 constexpr double wall_to = 0.12;             // likewise [m]
+constexpr double least_of_flatter = 0.5;     // of what a flatter cut there is worth
 constexpr double high_wall = 0.03;           // of that soil, to be cut before all else [m]
 constexpr double most_doubt_at_wall = 1.42;  // of the soil's strength
 constexpr double wall_worth = 1.0;           // of that soil, beyond that of other soil
@@ -80,12 +82,12 @@ constexpr double most_strength = 20.0;   // likewise
 constexpr int halvings = 6;              // of these bounds, by their logarithm
 constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
-constexpr Attitude steep_attitude = {1.1, false};              // along the walls of a pit
-const std::array<double, 3> finish_angles = {0.1, 0.2, 0.35};  // likewise
-constexpr double steepest_drag = 1.0;                          // down a face [rad]
-constexpr double steepest_floor = 0.15;                        // else it is a face [rad]
-constexpr double on_face = 0.2;                                // where its slope is told [m]
-const std::array<double, 2> steeper = {0.1, 0.3};              // of a dig than its face [rad]
+constexpr Attitude steep_attitude = {1.1, false};                    // along the walls of a pit
+const std::array<double, 4> finish_angles = {0.05, 0.1, 0.2, 0.35};  // likewise
+constexpr double steepest_drag = 1.0;                                // down a face [rad]
+constexpr double steepest_floor = 0.15;                              // else it is a face [rad]
+constexpr double on_face = 0.2;                                      // where its slope is told [m]
+const std::array<double, 2> steeper = {0.1, 0.3};                    // of a dig than its face [rad]
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
 
@@ -173,7 +175,7 @@ class StepSearch {
     for (const std::size_t lane : lanes) lay_out(lane);
     if (task_.finishing) return best(Aim::shape);
     auto dig = best(Aim::volume);
-    if (dig && !dig->may_stall && dig->dig.fill > poor_fill) return dig;
+    if (!task_.may_bite || (dig && !dig->may_stall && dig->dig.fill > poor_fill)) return dig;
     candidates_.clear();
     for (const std::size_t lane : lanes) lay_out_in_hard(lane);
     auto bite = best(Aim::hard);
@@ -192,23 +194,35 @@ class StepSearch {
     return order;
   }
 
-  /// As steeply as the machine surely can; else, if it may risk a stall, what is worth most.
+  /// As steeply as the machine surely can without a loss of its work; else, if it may risk a
+  /// stall, what is worth most.
   std::optional<StepDig> best_at_wall() {
     std::vector<std::size_t> lanes;
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
       if (lanes_[lane].line.ends_at_wall && has_end_wall(lanes_[lane])) lanes.push_back(lane);
     }
     if (lanes.empty()) return std::nullopt;
+    std::vector<StepDig> sure;
     std::optional<StepDig> risky_one;
     for (const Attitude& attitude : wall_attitudes) {
       for (const std::size_t lane : lanes) cut_end_wall(lane, attitude);
       auto dig = best(Aim::wall);
       candidates_.clear();
-      if (dig && !dig->may_stall) return dig;
-      if (dig && task_.may_risk && (!risky_one || dig->worth > risky_one->worth))
+      if (!dig) continue;
+      if (!dig->may_stall) {
+        sure.push_back(*std::move(dig));
+        if (sure.back().dig.fill > poor_fill) break;
+      } else if (task_.may_risk && (!risky_one || dig->worth > risky_one->worth)) {
         risky_one = std::move(dig);
+      }
     }
-    return risky_one;
+    if (sure.empty()) return risky_one;
+    const auto most =
+        std::max_element(sure.begin(), sure.end(),
+                         [](const StepDig& a, const StepDig& b) { return a.worth < b.worth; });
+    const double least = least_of_flatter * most->worth;
+    return *std::find_if(sure.begin(), sure.end(),
+                         [&](const StepDig& each) { return each.worth >= least; });
   }
 
   std::optional<StepDig> best(Aim aim) {
@@ -570,7 +584,8 @@ class StepSearch {
     const double spoiled = deep_price * change.too_deep + spill_price * change.spilled;
     if (aim == Aim::wall) return change.gained + wall_worth * change.at_end - spoiled;
     if (aim != Aim::shape) return gained_by(step) - spoiled;
-    return std::max(change.shaped, cleared_worth * change.cleared) - spoiled;
+    const double left = pushed_price * std::max(0.0, change.pushed);  // for the next pass
+    return std::max(change.shaped, cleared_worth * change.cleared) - left - spoiled;
   }
 
   /// Less is not worth a cycle.

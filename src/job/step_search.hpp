@@ -28,6 +28,7 @@ struct StepTask {
   const std::vector<DigStart>& barren;  ///< digs that lifted much less than foretold
   std::vector<WorkLine> lines = {};     ///< to dig along
   bool may_risk = false;                ///< a stall, to take off that end
+  bool may_bite = true;                 ///< less than a bucket, where no more can be had
   double slack = 0.0;  ///< so far below the design ground does not count as too deep [m]
   /// A layer of a wide design is dug off before what is below this height of the site [m].
   std::optional<double> bench = {};

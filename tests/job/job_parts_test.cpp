@@ -232,6 +232,28 @@ TEST(JobStations, OnlyTheFarOneEndsAtTheWall) {
   }
 }
 
+/// Lanes of all passes from the last station of a trench so wide [m].
+std::vector<double> passes_of(double width) {
+  const HandMadeJob job(10.0, width);
+  const JobFrame frame = job.frame();
+  const JobStation station = stations_of(frame, job.settings).back();
+  std::vector<double> lanes;
+  for (const WorkLine& line :
+       work_lines(frame, station, job.settings.site.machine, {station.along, station.beside}, true))
+    lanes.push_back(line.lane + station.beside);
+  std::sort(lanes.begin(), lanes.end());
+  return lanes;
+}
+
+TEST(JobStations, PassesRunBetweenLanesOnlyWhereTheseLeaveARidge) {
+  // A bucket of 0.7 m: both lanes of a trench of 1 m reach over its middle.
+  const std::vector<double> narrow = passes_of(1.0), wide = passes_of(1.3);
+  EXPECT_EQ(narrow.size(), 4U);  // two at the walls, and two a little off them
+  for (const double lane : narrow) EXPECT_GT(std::abs(lane), 0.03);
+  EXPECT_EQ(wide.size(), 5U);
+  EXPECT_NEAR(wide[2], 0.0, 0.03);
+}
+
 TEST(JobStations, WhatAPlaceBeyondShapesIsNoWallAndTakesNoPasses) {
   const HandMadeJob job;
   const Machine& machine = job.settings.site.machine;
@@ -342,6 +364,32 @@ TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
   ASSERT_TRUE(dig.has_value());
   EXPECT_GT(dig->change.cleared, 0.6 * left * 0.7 * 0.6);
   EXPECT_LT(dig->change.too_deep, 0.005);
+}
+
+/// The first dig at the far end of a trench that is dug up to so far before it [m].
+std::optional<StepDig> dig_at_wall(double left, double strength) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  for_each_cell(job.ground.bank.z, [&](Cell at) {
+    const double x = job.ground.bank.x(at.col), y = job.ground.bank.y(at.row);
+    if (std::abs(y) < 0.5 && x > 0.0 && x < 10.0 - left) job.ground.bank.z(at.row, at.col) = -0.5;
+  });
+  const BasePose base = {4.3, 0.0, 0.0, 0.0};
+  StepTask task{job.settings, map, job.ground, base, {{4.5, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  task.lines = {{0.0, -0.11, 2.95, 5.67, true}, {0.0, 0.11, 2.95, 5.67, true}};
+  task.strength_factor = task.hard_factor = strength;
+  return best_dig(task);
+}
+
+TEST(StepSearch, AnEndWallIsCutAsSteeplyAsSoilIsLifted) {
+  const auto whole = dig_at_wall(3.0, 1.0);
+  ASSERT_TRUE(whole);
+  EXPECT_GE(whole->path.parameters.penetration_angle, 1.3);
+  // Of what is left there the steepest cut loses most.
+  const auto rest = dig_at_wall(1.5, 0.3);
+  ASSERT_TRUE(rest);
+  EXPECT_GE(rest->path.parameters.penetration_angle, 1.1);
+  EXPECT_GT(rest->dig.payload_mass, 120.0);
 }
 
 TEST(StepSearch, NoDragGoesDownAWall) {
@@ -613,7 +661,7 @@ TEST(LearntNumber, ManyStallsDoNotFreezeIt) {
 }
 
 /// The dig that a machine finds in a trench of soil so much stronger than its kind.
-std::optional<StepDig> dig_in_soil(const HandMadeJob& job, double strength) {
+std::optional<StepDig> dig_in_soil(const HandMadeJob& job, double strength, bool may_bite = true) {
   const BasePose base = {3.0, 0.0, 0.0, 0.0};
   const JobMap map = job.map();
   const std::vector<DigStart> barren;
@@ -622,6 +670,7 @@ std::optional<StepDig> dig_in_soil(const HandMadeJob& job, double strength) {
   task.strength_factor = strength;
   task.hard_factor = 1.3 * strength;
   task.slack = 0.015;
+  task.may_bite = may_bite;
   return best_dig(task);
 }
 
@@ -638,6 +687,7 @@ TEST(StepSearch, BitesWhereNoFlatCutIsStrongEnough) {
   EXPECT_GT(hard->dig.payload_mass, 60.0);
   EXPECT_GT(hard->signs.stalls_at, 4.0);
   EXPECT_LT(hard->signs.stalls_at, 20.0);
+  EXPECT_FALSE(dig_in_soil(job, 4.0, false));  // where passes are to take what is left
 }
 
 TEST(DumpPlace, ATruckIsLoadedFromAboveItsBed) {
@@ -764,6 +814,7 @@ TEST(LaneView, WhatIsPushedAsideIsNotOfThePassThatPushedIt) {
   EXPECT_NEAR(change.cleared, under, 1e-9);
   EXPECT_NEAR(change.finished, under / 0.05, 1e-9);
   EXPECT_NEAR(change.gained, under - aside, 1e-9);
+  EXPECT_NEAR(change.pushed, aside, 1e-9);
   EXPECT_EQ(change.at_end, 0.0);
   EXPECT_NEAR(view.change(patch, {0.0, 0.03, 5.0}).at_end, 0.5 * change.gained, 0.01 * under);
 }
