@@ -59,7 +59,8 @@ class Panel {
   void label(const Eigen::Vector2d& at, const std::string& text);
   /// Text above a point; upright where it would be wider than this part of the x axis.
   void remark(const Eigen::Vector2d& at, double width, const std::string& text);
-  /// Coloured cells; unknown ones stay grey, `unknown` in the legend; with "" nothing is drawn there.
+  /// Coloured cells; unknown ones stay grey, `unknown` in the legend; with "" nothing is drawn
+  /// there.
   void map(const Grid& grid, const ColourScale& scale, const std::string& unknown = "not seen");
   /// A strip along the upper border, from and to an x.
   void span(double from, double to, const std::string& colour, const std::string& legend);

@@ -128,7 +128,7 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
     const std::string beyond = gains_beyond(results[i], high);
     if (!beyond.empty()) panel.label({high, row_of(i)}, beyond + " % →");
     if (!tells_gain(results[i])) {
-      panel.label({0.5 * (low + high), row_of(i)}, why_empty(results[i]));
+      panel.label({0.5 * high, row_of(i)}, why_empty(results[i]));
     }
   }
   return panel;
@@ -157,7 +157,9 @@ Figure study_figure(const std::vector<StudyResult>& results) {
   figure.title = "Gain and density error by condition";
   figure.rows = {{gain_panel(results), error_panel(results)}};
   figure.note =
-      "Intervals: 95 %, over the runs. →: gains beyond the axis, in the order of the legend.";
+      "Intervals: 95 %, over the runs. →: gains beyond the axis, in the order of the legend. "
+      "Machine "
+      "lifts or drags: the fixed dig would move it, and no gain can be told.";
   return figure;
 }
 
