@@ -154,7 +154,13 @@ std::vector<Tick> x_ticks_of(const Panel& panel, const Rectangle& view, double w
 std::vector<Tick> y_ticks_of(const Panel& panel, const Rectangle& view, double height,
                              double size) {
   if (panel.y_ticks()) return *panel.y_ticks();
-  return nice_ticks(view.y_min, view.y_max, std::clamp(height / (2.4 * size), 1.0, 7.0));
+  double wanted = std::clamp(height / (2.4 * size), 1.0, 7.0);
+  std::vector<Tick> ticks = nice_ticks(view.y_min, view.y_max, wanted);
+  while (ticks.size() < 2 && wanted < 7.0) {  // one number is no scale
+    wanted += 1.0;
+    ticks = nice_ticks(view.y_min, view.y_max, wanted);
+  }
+  return ticks;
 }
 
 // ---- Maps -------------------------------------------------------------------------------------

@@ -106,6 +106,17 @@ TEST(Panel, StatesHowMuchLongerAMetreIsUpwards) {
   EXPECT_FALSE(shows({170.0, 45.0}, "heights × 5.0"));    // lower axes
 }
 
+TEST(Panel, LowAxesHaveTwoNumbers) {
+  Panel panel("", "x", "y");
+  panel.view({0.0, -64.0, 1.0, 75.0});
+  panel.shape(0.1);
+  panel.least_height(20.0);
+  const std::string svg = to_svg(lay_out({"f", {{panel}}}, {85.0, {}}));
+  for (const char* number : {">−50</text>", ">0</text>", ">50</text>"}) {
+    EXPECT_NE(svg.find(number), std::string::npos) << number;
+  }
+}
+
 TEST(LayOut, SizesAreThoseAskedFor) {
   Panel panel("", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}}, {});
