@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -72,8 +73,20 @@ std::string stem_of(const std::string& key) {
   return key.substr(0, key.size() - suffix_of(key).size());
 }
 
+/// What a page calls a figure whose key is short.
+const std::map<std::string, std::string> plain_names = {
+    {"rms", "rms error"},
+    {"p95", "95 % of errors are below"},
+    {"beyond_twice", "beyond twice the tolerance"},
+    {"seen", "seen by scans"},
+    {"left", "still to dig"},
+    {"overdig", "dug too deep"},
+    {"keep_out", "changed in keep-outs"}};
+
 /// "payload_mass" -> "payload mass"
 std::string words_of(std::string stem) {
+  const auto plain = plain_names.find(stem);
+  if (plain != plain_names.end()) return plain->second;
   std::replace(stem.begin(), stem.end(), '_', ' ');
   return stem;
 }

@@ -196,6 +196,12 @@ TEST(ReportPage, AddsAPlotForAPhoneWithNamesOfItsOwn) {
   }
 }
 
+TEST(ReportPage, CallsShortKeysByPlainNames) {
+  const auto result = nlohmann::ordered_json::parse(R"({"p95_m": 0.08, "overdig_percent": 4.1})");
+  EXPECT_TRUE(contains(headline_tiles(result, {"p95_m"}), "<dt>95 % of errors are below</dt>"));
+  EXPECT_TRUE(contains(figure_tables(result), ">Dug too deep</th>"));
+}
+
 TEST(ReportPage, HeadlineIsOfWhatThereIs) {
   const auto result = nlohmann::ordered_json::parse(
       R"({"cycle": {"energy_kj": 196.7}, "payload_mass_kg": 522.6, "payload_mass_sd_kg": 5.8, "path": null})");
