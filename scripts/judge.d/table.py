@@ -374,7 +374,9 @@ def ten_table(done):
 
 # ---- Picture ----------------------------------------------------------------------------------
 
-LIGHT, GREY, BLUE, RED = "#c9ced6", "#8a8f98", "#1f5fa8", "#c0392b"
+# Okabe and Ito's colours, frame, grid and texts as in src/drawing.
+LIGHT, GREY, BLUE, RED = "#56b4e9", "#777777", "#0072b2", "#d55e00"
+FRAME, GRID = "#444444", "#e4e4e4"
 
 
 def colour_of(dig):
@@ -393,18 +395,28 @@ class Panel:
     """Axes at (left, top) of the picture."""
 
     def __init__(self, place, title, axes, limits):
-        self.left, self.top, self.wide, self.high = *place, 330, 220
+        self.left, self.top, self.wide, self.high = *place, 230, 190
         self.x, self.y = limits
-        self.parts = [f'<text x="{self.left}" y="{self.top - 12}" font-weight="bold">{title}'
-                      '</text>',
-                      f'<rect x="{self.left}" y="{self.top}" width="{self.wide}" '
-                      f'height="{self.high}" fill="none" stroke="#444"/>']
+        self.parts = [f'<text x="{self.left}" y="{self.top - 10}" font-weight="bold">{title}'
+                      '</text>']
         for i in range(6):
             x, y = (a + (b - a) * i / 5 for a, b in (self.x, self.y))
-            self.text(self.at(x, self.y[0]), (0, 16), f"{x:.3g}", "middle")
-            self.text(self.at(self.x[0], y), (-6, 4), f"{y:.3g}", "end")
-        self.text((self.left + self.wide / 2, self.top + self.high), (0, 34), axes[0], "middle")
-        self.text((self.left, self.top), (4, 14), axes[1], "start")
+            if 0 < i < 5:
+                self.line([(self.x[0], y), (self.x[1], y)], GRID, "", 0.7)
+            self.tick(self.at(x, self.y[0]), (0, 4))
+            self.tick(self.at(self.x[0], y), (-4, 0))
+            self.text(self.at(x, self.y[0]), (0, 17), f"{x:.3g}", "middle")
+            self.text(self.at(self.x[0], y), (-7, 4), f"{y:.3g}", "end")
+        self.parts.append(f'<rect x="{self.left}" y="{self.top}" width="{self.wide}" '
+                          f'height="{self.high}" fill="none" stroke="{FRAME}" stroke-width="0.7"/>')
+        self.text((self.left + self.wide / 2, self.top + self.high), (0, 35), axes[0], "middle")
+        x, y = self.left - 36, self.top + self.high / 2
+        self.parts.append(f'<text transform="translate({x},{y}) rotate(-90)" '
+                          f'text-anchor="middle">{axes[1]}</text>')
+
+    def tick(self, place, shift):
+        self.parts.append(f'<path d="M{place[0]:.1f} {place[1]:.1f}l{shift[0]} {shift[1]}" '
+                          f'stroke="{FRAME}" stroke-width="0.7"/>')
 
     def at(self, x, y):
         across, up = (x - self.x[0]) / (self.x[1] - self.x[0]), (y - self.y[0]) / (
@@ -420,10 +432,10 @@ class Panel:
         self.parts.append(f'<polyline points="{where}" fill="none" stroke="{colour}" '
                           f'stroke-width="{width}" stroke-dasharray="{dash}"/>')
 
-    def dot(self, point, colour, label, below=False):
+    def dot(self, point, colour, label, to_left=False):
         x, y = self.at(*point)
         self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>')
-        self.text((x, y), (6, 12 if below else -5), label, "start")
+        self.text((x, y), (-7 if to_left else 7, 4), label, "end" if to_left else "start")
 
 
 def reference(group):
@@ -454,35 +466,53 @@ def top(value, step):
     return step * math.ceil(value / step)
 
 
+def equality(panel):
+    """Where both say the same."""
+    panel.line([(panel.x[0], panel.x[0]), (panel.x[1], panel.x[1])], GREY, "1.5 3", 1.4)
+
+
+def ten_panel(place, ten):
+    pairs = [(per_work(dig.judge), per_work(dig.ours)) for dig in ten]
+    limit = (0, top(1.1 * max(max(pair) for pair in pairs), 10))
+    panel = Panel(place, "Ten paths, payload per work",
+                  ("judge [kg/kJ]", "excavplan [kg/kJ]"), (limit, limit))
+    equality(panel)
+    for dig, pair in zip(ten, pairs):
+        crowded = any(0 < pair[1] - other[1] < 4 and abs(other[0] - pair[0]) < 3
+                      for other in pairs)
+        panel.dot(pair, RED, dig.name[-2:].lstrip("0"), crowded)
+    return panel
+
+
+def legend(y):
+    key = [(LIGHT, "", "judge, 35 and 40 mm"), (GREY, "", "judge, 30 mm"),
+           (BLUE, "", "judge, 20 and 25 mm"), (RED, "", "excavplan, peak friction"),
+           (RED, "6 4", "excavplan, critical friction"), (GREY, "1.5 3", "equality")]
+    parts = []
+    for i, (colour, dash, words) in enumerate(key):
+        x, line = 30 + 200 * (i % 3), y + 20 * (i // 3)
+        parts.append(f'<line x1="{x}" x2="{x + 22}" y1="{line}" y2="{line}" stroke="{colour}" '
+                     f'stroke-width="2" stroke-dasharray="{dash}"/>'
+                     f'<text x="{x + 28}" y="{line + 4}">{words}</text>')
+    return parts
+
+
 def picture(done):
     fixed, longs = (list(named(done, start).values()) for start in ("fixed-", "long"))
     ten = [dig for name, dig in done.items() if name.startswith("ten-")]
-    panels = [Panel((60, 70), "Fixed path: drag force", ("drag [m]", "kN"), ((0, 1.5), (0, 10))),
-              Panel((460, 70), "Fixed path: soil in the bucket", ("drag [m]", "kg"),
+    force, drag = "drag force [kN]", "drag [m]"
+    panels = [Panel((56, 34), "Fixed path", (drag, force), ((0, 1.5), (0, 10))),
+              Panel((366, 34), "Fixed path", (drag, "soil in the bucket [kg]"),
                     ((0, 1.5), (0, 300)))]
     forces(panels[0], fixed)
     fill(panels[1], fixed)
     if longs:
-        panels.append(Panel((60, 380), "Long shallow path: drag force", ("drag [m]", "kN"),
-                            ((0, 3), (0, 5))))
+        panels.append(Panel((56, 306), "Long shallow path", (drag, force), ((0, 3), (0, 5))))
         forces(panels[-1], longs)
     if ten:
-        pairs = [(per_work(dig.judge), per_work(dig.ours)) for dig in ten]
-        panels.append(Panel((460, 380), "Ten paths: kg per kJ of the tool",
-                            ("judge", "excavplan"),
-                            ((0, top(max(p[0] for p in pairs), 10)),
-                             (0, top(max(p[1] for p in pairs), 10)))))
-        for dig, pair in zip(ten, pairs):
-            crowded = any(0 < other[1] - pair[1] < 5 and abs(other[0] - pair[0]) < 2
-                          for other in pairs)
-            panels[-1].dot(pair, RED, dig.name[-2:].lstrip("0"), crowded)
-    key = [(LIGHT, "", "judge, 35, 40 mm"), (GREY, "", "30 mm"), (BLUE, "", "20, 25 mm"),
-           (RED, "", "excavplan, peak friction"), (RED, "6 4", "critical friction")]
-    parts = [part for panel in panels for part in panel.parts]
-    for left, (colour, dash, words) in zip((60, 210, 300, 400, 600), key):
-        parts.append(f'<line x1="{left}" x2="{left + 24}" y1="24" y2="24" stroke="{colour}" '
-                     f'stroke-width="2.4" stroke-dasharray="{dash}"/>'
-                     f'<text x="{left + 30}" y="28">{words}</text>')
-    return ('<svg xmlns="http://www.w3.org/2000/svg" width="820" height="660" '
-            'font-family="sans-serif" font-size="12"><rect width="820" height="660" fill="white"/>'
-            + "\n".join(parts) + "</svg>\n")
+        panels.append(ten_panel((366, 306), ten))
+    parts = [part for panel in panels for part in panel.parts] + legend(560)
+    return ('<svg xmlns="http://www.w3.org/2000/svg" width="620" height="596" '
+            'font-family="sans-serif" font-size="12" fill="#222222">'
+            '<title>Digs in discrete elements and in excavplan</title>'
+            '<rect width="620" height="596" fill="#ffffff"/>' + "\n".join(parts) + "</svg>\n")

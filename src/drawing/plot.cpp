@@ -52,7 +52,7 @@ void Panel::map(const Grid& grid, const ColourScale& scale, const std::string& u
                             grid.origin.y() + grid.cell.y() * static_cast<double>(grid.z.rows()));
   shapes_.push_back({Kind::map,
                      {grid.origin, end},
-                     {"#888888", 0.5, "#c8c8c8"},
+                     {"#888888", 0.5, unknown.empty() ? "none" : "#c8c8c8"},
                      grid.z.isFinite().all() ? "" : unknown,
                      0.0,
                      grid,
@@ -154,7 +154,13 @@ std::vector<Tick> x_ticks_of(const Panel& panel, const Rectangle& view, double w
 std::vector<Tick> y_ticks_of(const Panel& panel, const Rectangle& view, double height,
                              double size) {
   if (panel.y_ticks()) return *panel.y_ticks();
-  return nice_ticks(view.y_min, view.y_max, std::clamp(height / (2.4 * size), 1.0, 7.0));
+  double wanted = std::clamp(height / (2.4 * size), 1.0, 7.0);
+  std::vector<Tick> ticks = nice_ticks(view.y_min, view.y_max, wanted);
+  while (ticks.size() < 2 && wanted < 7.0) {  // one number is no scale
+    wanted += 1.0;
+    ticks = nice_ticks(view.y_min, view.y_max, wanted);
+  }
+  return ticks;
 }
 
 // ---- Maps -------------------------------------------------------------------------------------
@@ -277,6 +283,13 @@ std::string fitted(std::string text, double width, double size, bool bold = fals
   return text.empty() ? text : text + "…";
 }
 
+/// How much longer a metre is upwards than to the right: "heights × 2.6".
+std::string exaggeration_text(const Frame& frame) {
+  const double up = frame.box.height / (frame.data.y_max - frame.data.y_min);
+  const double along = frame.box.width / (frame.data.x_max - frame.data.x_min);
+  return "heights × " + readable(up / along, 2);
+}
+
 /// Whether a stretch of a line runs through a box.
 bool crosses(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Box& box) {
   double from = 0.0;
@@ -385,8 +398,10 @@ class Sheet {
     for (int pass = 0; pass < 3; ++pass) {  // axes, their numbers, and the room that these take
       for (Row& row : rows_) {
         row.height = 0.0;
-        for (const Panel* panel : row.panels) {
-          row.height = std::max(row.height, wanted_height(*panel, axes_width(row)));
+        for (std::size_t i = 0; i < row.panels.size(); ++i) {
+          const double words = height_of_words(*row.panels[i], left(i));
+          row.height =
+              std::max({row.height, wanted_height(*row.panels[i], axes_width(row)), words});
         }
       }
       measure_margins();
@@ -415,8 +430,24 @@ class Sheet {
     const Rectangle view = view_in(panel, axes_width(row), row.height);
     const double numbers = widest(y_ticks_of(panel, view, row.height, number()), number());
     const double name = panel.y_label().empty() ? 0.0 : line();
-    const double most = 0.6 * inner() / static_cast<double>(row.panels.size());
+    const auto own = std::count_if(row.panels.begin(), row.panels.end(),
+                                   [&](const Panel* each) { return !repeats_words(*each, row); });
+    const double most = 0.6 * inner() / static_cast<double>(own);
     return std::min(numbers + name + 6.5 * scale_, most);
+  }
+
+  /// Words beside axes in the lines that they need.
+  std::vector<std::string> lines_of(const Panel::Tick& tick, double margin) const {
+    return wrapped(tick.second, margin - 4.0 * scale_, number());
+  }
+  double pitch() const { return 1.1 * number(); }
+
+  /// Of axes beside which all words find room.
+  double height_of_words(const Panel& panel, double margin) const {
+    if (!panel.y_ticks() || margin <= 4.0 * scale_) return 0.0;
+    std::size_t most = 1;
+    for (const Tick& tick : *panel.y_ticks()) most = std::max(most, lines_of(tick, margin).size());
+    return static_cast<double>(most * panel.y_ticks()->size()) * pitch();
   }
 
   /// Room left of the axes of each panel in a column.
@@ -595,10 +626,12 @@ class Sheet {
     if (!hides_x(row)) draw_x(panel, frame, xs);
     if (!repeats_words(panel, row)) draw_y(panel, frame, ys, names_are_above());
     const double cell_right = box.left + axes_width(row) + right();
-    if (!panel.title().empty()) {
+    std::string title = panel.title();
+    if (panel.states_exaggeration()) title += ", " + exaggeration_text(frame);
+    if (!title.empty()) {
       const double baseline = box.top - 3.5 * scale_ - (names_are_above() ? line() : 0.0);
       put(box.left, std::max(baseline, top + 0.8 * text()),
-          fitted(panel.title(), cell_right - box.left, text(), true), text(), Anchor::start, true);
+          fitted(title, cell_right - box.left, text(), true), text(), Anchor::start, true);
     }
   }
 
@@ -657,10 +690,15 @@ class Sheet {
       if (!panel.y_ticks()) {
         add(DrawnPath{{{{box.left - 2.5 * scale_, y}, {box.left, y}}}, false, thin("#444444")});
       }
-      const std::string shown = fitted(tick.second, frame.margin - 4.0 * scale_, number());
-      const double baseline =
-          std::clamp(y + 0.36 * number(), box.top + 0.5 * number(), box.bottom() + 0.4 * number());
-      put(box.left - 4.0 * scale_, baseline, shown, number(), Anchor::end);
+      const std::vector<std::string> lines = lines_of(tick, frame.margin);
+      double baseline =
+          std::clamp(y + 0.36 * number(), box.top + 0.5 * number(), box.bottom() + 0.4 * number()) -
+          0.5 * pitch() * static_cast<double>(lines.size() - 1);
+      for (const std::string& each : lines) {
+        put(box.left - 4.0 * scale_, baseline, fitted(each, frame.margin - 4.0 * scale_, number()),
+            number(), Anchor::end);
+        baseline += pitch();
+      }
     }
     if (above) {
       const double room = box.width + right() + 0.5 * frame.margin;
@@ -739,8 +777,10 @@ class Sheet {
   }
 
   void draw_map(const Panel::Shape& shape, const Frame& frame) {
-    add(DrawnCells{shape.style.fill,
-                   {cells(shape.grid, {0, 0, shape.grid.z.cols()}, frame, shape.grid.z.rows())}});
+    if (shape.style.fill != "none") {
+      add(DrawnCells{shape.style.fill,
+                     {cells(shape.grid, {0, 0, shape.grid.z.cols()}, frame, shape.grid.z.rows())}});
+    }
     const Grid grid = thinned(shape.grid);
     for (const auto& [colour, runs] : runs_by_colour(grid, shape.scale)) {
       DrawnCells drawn{colour, {}};

@@ -59,7 +59,8 @@ class Panel {
   void label(const Eigen::Vector2d& at, const std::string& text);
   /// Text above a point; upright where it would be wider than this part of the x axis.
   void remark(const Eigen::Vector2d& at, double width, const std::string& text);
-  /// Coloured cells; unknown ones stay grey, `unknown` in the legend.
+  /// Coloured cells; unknown ones stay grey, `unknown` in the legend; with "" nothing is drawn
+  /// there.
   void map(const Grid& grid, const ColourScale& scale, const std::string& unknown = "not seen");
   /// A strip along the upper border, from and to an x.
   void span(double from, double to, const std::string& colour, const std::string& legend);
@@ -68,11 +69,13 @@ class Panel {
   void view(const Rectangle& view) { view_ = view; }
   /// A metre is as long in x as in y.
   void equal_aspect() { equal_aspect_ = true; }
+  /// The title ends in how many times longer a metre is in y than in x.
+  void state_exaggeration() { states_exaggeration_ = true; }
   /// Height over width of the axes, unless equal_aspect().
   void shape(double height_over_width) { shape_ = height_over_width; }
   /// Of the axes [pt], also if that is much.
   void least_height(double height) { least_height_ = height; }
-  /// These instead of numbers.
+  /// These instead of numbers; words of y take several lines where they find no room.
   void x_ticks(std::vector<Tick> ticks) { x_ticks_ = std::move(ticks); }
   void y_ticks(std::vector<Tick> ticks) { y_ticks_ = std::move(ticks); }
   /// Words of x that find no room are left out, not cut.
@@ -89,6 +92,7 @@ class Panel {
   const std::optional<std::vector<Tick>>& x_ticks() const { return x_ticks_; }
   const std::optional<std::vector<Tick>>& y_ticks() const { return y_ticks_; }
   bool has_equal_aspect() const { return equal_aspect_; }
+  bool states_exaggeration() const { return states_exaggeration_; }
   bool has_map() const;
   bool hides_x() const { return hides_x_; }
   bool skips_x_ticks() const { return skips_x_ticks_; }
@@ -104,6 +108,7 @@ class Panel {
   std::optional<Rectangle> view_;
   std::optional<std::vector<Tick>> x_ticks_, y_ticks_;
   bool equal_aspect_ = false;
+  bool states_exaggeration_ = false;
   bool hides_x_ = false;
   bool skips_x_ticks_ = false;
   bool mirrors_x_ = false;

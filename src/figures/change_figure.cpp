@@ -188,8 +188,8 @@ void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area
                 const Turn& turn) {
   const ChangeZone& zone = change.zones[static_cast<std::size_t>(index)];
   if (zone.kind == ZoneKind::spill && !is_largest_of_its_kind(zone, change)) return;
-  panel.label(turn(inside_of(area, index)), std::string(style_of(zone.kind).name) + ' ' +
-                                                readable(std::abs(zone.volume.value)) + " m³");
+  panel.label(turn(inside_of(area, index)),
+              std::string(style_of(zone.kind).name) + ' ' + volume_text(zone.volume));
 }
 
 Rectangle joined(const Rectangle& a, const Rectangle& b) {
@@ -317,10 +317,11 @@ void draw_band(Panel& panel, const Points& line, double half_width) {
 Panel section_panel(const Section& section, const HeightMap& before, const AreaChange& area) {
   const Profiles profiles = profiles_of(section, before, area.difference);
   const double line = section.along_x ? before.y(section.line) : before.x(section.line);
-  const std::string title = "section through the " + section.name + ", " +
-                            (section.along_x ? "y = " : "x = ") + rounded(line, 0.01) + " m";
+  const std::string title = section.name + ", section at " + (section.along_x ? "y = " : "x = ") +
+                            rounded(line, 0.01) + " m";
   Panel panel(title, section.along_x ? "x [m]" : "y [m]", "z [m]");
   panel.shape(0.42);
+  panel.state_exaggeration();
   draw_band(panel, profiles.after, 1.96 * area.noise_sd);
   panel.line(profiles.before, {colours::grey, 1.0, "none", 1.0, {3.0, 1.5}}, "ground before");
   panel.line(profiles.after, {colours::vermilion, 1.2}, "ground after");
@@ -426,6 +427,7 @@ Figure height_change_figure(const ChangeSheet& sheet) {
   const ColourScale scale = {bands_of(change)};
   Figure figure;
   figure.title = "Height change of the ground";
+  figure.note = "± is one standard deviation.";
   figure.colour_bar = ColourBar{scale, "height after − before [cm]", 0.01};
   std::vector<Panel> maps;
   std::vector<Panel> sections;

@@ -53,8 +53,8 @@ Figure job_estimate_figure(const JobEstimate& estimate, const std::optional<JobC
     y -= 1.0;
   }
   panel.y_ticks(std::move(names));
-  panel.view({0.0, 0.4, 1.05 * most, static_cast<double>(rows.size()) + 0.75});
-  panel.shape(0.09 * static_cast<double>(rows.size()));
+  panel.view({0.0, 0.4, 1.05 * most, static_cast<double>(rows.size()) + 0.9});
+  panel.shape(0.11 * static_cast<double>(rows.size()));
   Figure figure;
   figure.title = "What the job takes";
   figure.rows = {{panel}};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/text.hpp"
 #include "results/dig_timing.hpp"
 
 namespace excavplan {
@@ -100,17 +101,34 @@ Figure joints_figure(const Timed& timed, const std::string& unit, const std::str
   return figure;
 }
 
-/// The limit of a torque, on the sides that carry a tenth of it.
+double largest_of(const Points& load) {
+  double largest = 0.0;
+  for (const Eigen::Vector2d& at : load) largest = std::max(largest, std::abs(at.y()));
+  return largest;
+}
+
+/// Of a limit that is drawn; below, it would flatten the curve. Ours.
+constexpr double least_drawn_share = 0.6;
+
+/// The limit of a torque, on the sides that come near to it.
 std::vector<Curve> limits_of(const Points& load, double limit) {
   std::vector<Curve> limits;
   for (const double sign : {1.0, -1.0}) {
-    const auto carries = [&](const Eigen::Vector2d& at) { return sign * at.y() > 0.1 * limit; };
-    if (std::none_of(load.begin(), load.end(), carries)) continue;
+    const auto is_near = [&](const Eigen::Vector2d& at) {
+      return sign * at.y() > least_drawn_share * limit;
+    };
+    if (std::none_of(load.begin(), load.end(), is_near)) continue;
     limits.push_back({{{load.front().x(), sign * limit}, {load.back().x(), sign * limit}},
                       limit_style,
                       "limit"});
   }
   return limits;
+}
+
+/// "; of the boom 400 kN m, 15 %"
+std::string limit_text(Joint joint, double limit, double share) {
+  return std::string("; of the ") + name(joint) + ' ' + readable(limit) + " kN m, " +
+         readable(100.0 * share, 2) + " %";
 }
 
 }  // namespace
@@ -147,13 +165,22 @@ Figure forces_figure(const DugDig& dug) {
 
 Figure torques_figure(const DugDig& dug) {
   const Timed timed(dug);
+  std::string beyond;
   Figure figure = joints_figure(
       timed, "kN m", "torque",
       [&](int joint, std::size_t i) { return timed.sample(i).torque[joint] / 1000.0; },
       [&](int joint, const Points& load) {
-        return limits_of(load, dug.machine.limits[static_cast<std::size_t>(joint)].torque / 1000.0);
+        const double limit = dug.machine.limits[static_cast<std::size_t>(joint)].torque / 1000.0;
+        const double share = largest_of(load) / limit;
+        if (share <= least_drawn_share)
+          beyond += limit_text(static_cast<Joint>(joint), limit, share);
+        return limits_of(load, limit);
       });
   figure.title = "Torques of the joints: " + dug.title;
+  if (!beyond.empty()) {
+    figure.note = "Beyond the axes, with the largest share of it that the dig takes: limit" +
+                  beyond.substr(1) + ".";
+  }
   return figure;
 }
 

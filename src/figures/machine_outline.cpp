@@ -45,7 +45,35 @@ Points boom_outline(const Machine& machine, const LinkPositions& at) {
           point(0.0, -thin)};
 }
 
-/// With a tail that its cylinder pushes.
+/// Of an edge whose x grows, between its corners.
+double height_on(const Points& edge, double x) {
+  std::size_t next = 1;
+  while (next + 1 < edge.size() && edge[next].x() < x) ++next;
+  const Vector2d& a = edge[next - 1];
+  const Vector2d& b = edge[next];
+  return a.y() + (b.y() - a.y()) * (x - a.x()) / (b.x() - a.x());
+}
+
+/// The edge with a lug that holds a pin above it; half as wide at its top as at its foot.
+Points with_lug(const Points& edge, const Vector2d& pin, double half) {
+  const double left = std::max(pin.x() - half, edge.front().x());
+  const double right = std::min(pin.x() + half, edge.back().x());
+  if (left >= right || pin.y() < height_on(edge, pin.x())) return edge;
+  Points found;
+  for (const Vector2d& corner : edge) {
+    if (corner.x() <= left) found.push_back(corner);
+  }
+  found.emplace_back(left, height_on(edge, left));
+  found.emplace_back(pin.x() - 0.5 * half, pin.y() + 0.4 * half);
+  found.emplace_back(pin.x() + 0.5 * half, pin.y() + 0.4 * half);
+  found.emplace_back(right, height_on(edge, right));
+  for (const Vector2d& corner : edge) {
+    if (corner.x() >= right) found.push_back(corner);
+  }
+  return found;
+}
+
+/// With a tail that its cylinder pushes, and a lug for the cylinder of the bucket.
 Points arm_outline(const Machine& machine, const LinkPositions& at) {
   const double length = machine.arm_length;
   const auto point = [&](double x, double z) { return beside(at.arm_pin, at.phi2, x, z); };
@@ -58,15 +86,21 @@ Points arm_outline(const Machine& machine, const LinkPositions& at) {
     }
   }
   const double thin = 0.04 * length;
-  return {point(-tail - thin, lift),
-          point(-tail, lift + thin),
-          point(0.15 * length, 0.16 * length),
-          point(length, thin),
-          point(length + thin, 0.0),
-          point(length, -thin),
-          point(0.1 * length, -0.05 * length),
-          point(-0.3 * thin, -1.2 * thin),
-          point(-tail, lift - thin)};
+  Points edge = {{-tail, lift + thin}, {0.15 * length, 0.16 * length}, {length, thin}};
+  if (machine.cylinders) {
+    const PolarPin& foot = (*machine.cylinders)[2].geometry().foot;
+    edge = with_lug(edge, Vector2d(length, 0.0) + pin_at({0.0, 0.0}, 0.0, foot), 1.5 * thin);
+  }
+  Points outline = {point(-tail - thin, lift)};
+  for (const Vector2d& corner : edge) outline.push_back(point(corner.x(), corner.y()));
+  for (const Vector2d& corner : Points{{length + thin, 0.0},
+                                       {length, -thin},
+                                       {0.1 * length, -0.05 * length},
+                                       {-0.3 * thin, -1.2 * thin},
+                                       {-tail, lift - thin}}) {
+    outline.push_back(point(corner.x(), corner.y()));
+  }
+  return outline;
 }
 
 /// Where two bars that turn about a and b meet, on the left of the way from a to b or the right.
@@ -255,6 +289,10 @@ MachineOutline machine_outline(const Machine& machine, const JointAngles& joints
   outline.bracket = bracket_outline(machine, at, outline.bucket);
   outline.pins = {machine.boom_pin, at.arm_pin, at.bucket_pin};
   if (!outline.bracket.empty()) outline.pins.push_back(outline.bracket[1]);
+  if (outline.cylinders.size() > 2) {
+    outline.pins.insert(outline.pins.end(), outline.cylinders[2].begin(),
+                        outline.cylinders[2].end());
+  }
   return outline;
 }
 

@@ -19,7 +19,7 @@ struct MachineOutline {
   std::vector<Points> cylinders;  ///< from foot to rod; of the bucket with rocker and link
   Points bucket;                  ///< open, from tip to the top edge
   Points bracket;                 ///< between pins and bucket; empty without a link
-  Points pins;                    ///< of boom, arm, bucket and link
+  Points pins;                    ///< of boom, arm, bucket, its link and its cylinder
 };
 
 MachineOutline machine_outline(const Machine& machine, const JointAngles& joints);

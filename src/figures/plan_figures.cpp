@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/angles.hpp"
@@ -37,19 +39,46 @@ struct ShownNumber {
     label = std::string(of.text) + (is_angle ? " [deg]" : " [m]");
   }
   double of(const DigParameters& dig) const { return per_si * (dig.*info->field); }
+  /// "drag length 0.40 m"
+  std::string named(const DigParameters& dig) const {
+    return std::string(info->text) + ' ' + short_number(of(dig), per_si == 1.0 ? 2 : 0) +
+           (per_si == 1.0 ? " m" : " deg");
+  }
 };
 
-/// One section: two numbers on their search ranges, the others as planned.
+/// One section: two numbers, the others as planned.
 class Section {
  public:
   Section(const DrawnPlan& drawn, std::size_t x, std::size_t y)
       : drawn_(drawn),
         x_(dig_parameter_table()[x]),
         y_(dig_parameter_table()[y]),
+        held_(dig_parameter_table()[3 - x - y]),
         bounds_(machine_bounds(drawn.machine, drawn.search.bounds)) {}
 
   static constexpr Eigen::Index across = 20;  ///< cells a side
   static constexpr std::size_t count = across * across;
+
+  /// From the search range to the part of it that has a path: little of the figure is empty.
+  void narrow(const DigLayout& layout) {
+    const Eigen::Vector2d low(bounds_.lower.*x_.info->field, bounds_.lower.*y_.info->field);
+    const Eigen::Vector2d high(bounds_.upper.*x_.info->field, bounds_.upper.*y_.info->field);
+    const DigPlan& plan = drawn_.plan;
+    const DigParameters& best = plan.dig->parameters;
+    Eigen::AlignedBox2d used(Eigen::Vector2d(best.*x_.info->field, best.*y_.info->field));
+    const Eigen::Vector2d half = (high - low) / (2.0 * static_cast<double>(across));
+    for (std::size_t i = 0; i < count; ++i) {
+      const DigParameters each = dig(i);
+      if (!std::holds_alternative<DigPath>(layout.path_from(each, plan.dig->start_x))) continue;
+      const Eigen::Vector2d middle(each.*x_.info->field, each.*y_.info->field);
+      used.extend(middle - half).extend(middle + half);
+    }
+    for (const int axis : {0, 1}) {
+      const auto field = (axis == 0 ? x_ : y_).info->field;
+      bounds_.lower.*field = std::max(low[axis], used.min()[axis]);
+      bounds_.upper.*field = std::min(high[axis], used.max()[axis]);
+    }
+  }
 
   DigParameters dig(std::size_t cell) const {
     DigParameters dig = drawn_.plan.dig->parameters;
@@ -59,7 +88,7 @@ class Section {
   }
 
   Panel panel(const std::vector<double>& worth, const ColourScale& scale) const {
-    Panel panel("", x_.label, y_.label);
+    Panel panel("at " + held_.named(drawn_.plan.dig->parameters), x_.label, y_.label);
     const Eigen::Vector2d low(x_.of(bounds_.lower), y_.of(bounds_.lower));
     const Eigen::Vector2d high(x_.of(bounds_.upper), y_.of(bounds_.upper));
     Grid grid{low, (high - low) / static_cast<double>(across), Eigen::ArrayXXd(across, across)};
@@ -83,17 +112,18 @@ class Section {
   }
 
   const DrawnPlan& drawn_;
-  ShownNumber x_, y_;
+  ShownNumber x_, y_, held_;
   DigBounds bounds_;
 };
 
 /// Worths of digs from the planned start, in the unit shown; NaN where one cannot be dug.
-std::vector<double> worths(const DrawnPlan& drawn, const std::vector<Section>& sections) {
+std::vector<double> worths(const DrawnPlan& drawn, std::vector<Section>& sections) {
   const PlanSite& site = drawn.site;
   const Machine& machine = drawn.machine;
   const DigObjective& objective = drawn.search.objective;
   const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
   const DigLayout layout(machine, site.ground);
+  for (Section& section : sections) section.narrow(layout);
   std::vector<double> found(sections.size() * Section::count, nan);
   parallel_for(found.size(), drawn.search.threads, [&](std::size_t i) {
     const DigParameters dig = sections[i / Section::count].dig(i % Section::count);
@@ -106,6 +136,19 @@ std::vector<double> worths(const DrawnPlan& drawn, const std::vector<Section>& s
     }
   });
   return found;
+}
+
+/// The best worth so far on a scale of its own, as it grows by little.
+Panel best_panel(const Points& best, const std::string& x_label, const std::string& unit) {
+  Panel panel("", x_label, "best [" + unit + "]");
+  if (best.empty()) return panel;
+  const double low = best.front().y();
+  const double high = best.back().y();
+  const double room = std::max(0.1 * (high - low), 1e-3 * std::abs(high));
+  panel.line(best, {colours::vermilion, 1.3}, "best so far");
+  panel.view({0.0, low - room, best.back().x() + 1.0, high + room});
+  panel.shape(0.2);
+  return panel;
 }
 
 /// What the dots do not show.
@@ -133,8 +176,8 @@ Figure search_figure(const DrawnPlan& drawn) {
   const DigGoalInfo& goal = info_of(drawn.search.objective.goal);
   const std::vector<double>& ranks = drawn.plan.search->ranks;
   const bool is_uncertain = drawn.plan.evaluations > static_cast<int>(ranks.size());
-  Panel panel("", is_uncertain ? "paths evaluated" : "digs evaluated",
-              worth_label(drawn.search.objective));
+  const std::string x_label = is_uncertain ? "paths evaluated" : "digs evaluated";
+  Panel panel("", x_label, worth_label(drawn.search.objective));
   Points digs, failed, best;
   double highest = nan;
   for (std::size_t i = 0; i < ranks.size(); ++i) {
@@ -159,16 +202,17 @@ Figure search_figure(const DrawnPlan& drawn) {
   panel.line(best, {colours::vermilion, 1.3}, "best so far");
   panel.view({0.0, 0.0, static_cast<double>(ranks.size()) + 1.0,
               1.06 * (std::isfinite(highest) ? highest : 1.0)});
-  panel.shape(0.5);
+  panel.shape(0.4);
+  panel.hide_x();
   Figure figure;
   figure.title = "Search: " + drawn.dug->title;
-  figure.rows = {{panel}};
+  figure.rows = {{panel}, {best_panel(best, x_label, goal.unit)}};
   figure.note = search_note(drawn, is_uncertain);
   return figure;
 }
 
 Figure landscape_figure(const DrawnPlan& drawn) {
-  const std::vector<Section> sections = {Section(drawn, 0, 1), Section(drawn, 1, 2)};
+  std::vector<Section> sections = {Section(drawn, 0, 1), Section(drawn, 1, 2)};
   const std::vector<double> worth = worths(drawn, sections);
   ColourScale scale;
   scale.high = 0.0;
@@ -185,6 +229,9 @@ Figure landscape_figure(const DrawnPlan& drawn) {
     figure.rows.back().push_back(
         sections[i].panel({first, first + static_cast<std::ptrdiff_t>(Section::count)}, scale));
   }
+  figure.note =
+      "All digs begin where the planned one does, at x = " + readable(drawn.plan.dig->start_x) +
+      " m. Beyond the axes none can be driven.";
   return figure;
 }
 

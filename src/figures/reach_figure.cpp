@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "figures/reach_figure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include <excavplan/kit/workspace.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -32,6 +35,55 @@ Grid force_grid(const Machine& machine, const Rectangle& all) {
   return grid;
 }
 
+/// Whether the tip comes to a place at some angle of the bucket.
+bool is_reached(const Machine& machine, double x, double z) {
+  constexpr int angles = 36;
+  const auto& limits = machine.limits[2];
+  for (int i = 0; i <= angles; ++i) {
+    const double bucket = limits.lower + (limits.upper - limits.lower) * i / angles;
+    const auto joints = inverse_kinematics_fixed_bucket(machine, x, z, bucket);
+    if (std::holds_alternative<JointAngles>(joints)) return true;
+  }
+  return false;
+}
+
+/// In grey, row by row: where the tip comes, but in no digging posture.
+void draw_reached(Panel& panel, const Machine& machine, const Grid& grid) {
+  const Style grey = {"none", 0.0, "#c8c8c8"};
+  const double cell = grid.cell.x();
+  const auto at = [&](Eigen::Index i) { return cell * static_cast<double>(i); };
+  const auto is_grey = [&](Eigen::Index row, Eigen::Index col) {
+    return col < grid.z.cols() && !std::isfinite(grid.z(row, col)) &&
+           is_reached(machine, grid.origin.x() + at(col) + 0.5 * cell,
+                      grid.origin.y() + at(row) + 0.5 * cell);
+  };
+  for (Eigen::Index row = 0; row < grid.z.rows(); ++row) {
+    const double low = grid.origin.y() + at(row);
+    const double high = low + 1.04 * cell;  // no seam between rows
+    for (Eigen::Index col = 0; col < grid.z.cols(); ++col) {
+      const Eigen::Index first = col;
+      while (is_grey(row, col)) ++col;
+      if (col == first) continue;
+      const double left = grid.origin.x() + at(first);
+      const double right = grid.origin.x() + at(col);
+      panel.polygon({{left, low}, {right, low}, {right, high}, {left, high}}, grey);
+    }
+  }
+  panel.polygon({}, {"#888888", 0.5, "#c8c8c8"}, "reached, but not at these angles");
+}
+
+/// The furthest, lowest and highest places with what a data sheet calls them.
+void label_reach(Panel& panel, const Machine& machine, const Points& outline) {
+  const Reach reach = reach_of(machine);
+  const auto [lowest, highest] = std::minmax_element(
+      outline.begin(), outline.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  if (reach.ground > 0.0) {
+    panel.label({reach.ground, 0.0}, "reach on the ground " + readable(reach.ground) + " m");
+  }
+  if (reach.depth > 0.0) panel.label(*lowest, "digging depth " + readable(reach.depth) + " m");
+  panel.label(*highest, "cutting height " + readable(reach.height) + " m");
+}
+
 Rectangle box_of(const Points& points) {
   Rectangle all{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
   for (const Eigen::Vector2d& point : points) {
@@ -52,13 +104,13 @@ JointAngles shown_posture(const Machine& machine) {
   return {share(0, 0.35), share(1, 0.4), share(2, 0.35)};
 }
 
-/// On the ground, half as far as it reaches.
+/// Of the machine on the ground, half as far as it reaches.
 std::string held_text(const Machine& machine) {
   const double x = 0.5 * reach_of(machine).ground;
   const double held = digging_force(machine, {x, 0.0}).held;
-  if (!std::isfinite(held)) return ".";
-  return "; at x = " + readable(x) + " m on the ground " + readable(1e-3 * held) +
-         " kN lift or drag the machine.";
+  if (!std::isfinite(held)) return "";
+  return " On the ground at x = " + readable(x) + " m the machine lifts or slides above " +
+         readable(1e-3 * held) + " kN.";
 }
 
 }  // namespace
@@ -73,12 +125,14 @@ Figure reach_figure(const Machine& machine) {
   }
   const ColourScale scale = {{}, 0.0, std::max(most, 1e-3)};
   Panel panel("", "x from the swing axis [m]", "z [m]");
-  panel.map(grid, scale, "no digging posture");
+  draw_reached(panel, machine, grid);
+  panel.map(grid, scale, "");
   panel.line({{all.x_min - 20.0, 0.0}, {all.x_max + 20.0, 0.0}}, {"#6b5335", 1.0}, "ground");
   panel.line(outline, {colours::black, 1.0}, "tip with the bucket in line with the arm");
   const MachineOutline drawn = machine_outline(machine, shown_posture(machine));
   draw_machine(panel, drawn);
   panel.line(drawn.bucket, {"#222222", 1.3});
+  label_reach(panel, machine, outline);
   const double tail = box_of(drawn.house).x_min;
   const double room = 0.03 * (all.x_max - all.x_min);
   panel.view(
@@ -89,8 +143,8 @@ Figure reach_figure(const Machine& machine) {
   figure.rows = {{panel}};
   figure.colour_bar = ColourBar{scale, "digging force of the tip, level [kN]"};
   figure.note =
-      "The largest force towards the machine that the joints give with the floor of the bucket at "
-      "-10 to 60 deg" +
+      "Colours: the largest level force towards the machine that the joints give at the tip, with "
+      "the floor of the bucket at −10 to 60 deg to the ground." +
       held_text(machine);
   return figure;
 }

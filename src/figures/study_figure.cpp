@@ -83,6 +83,19 @@ std::string gains_beyond(const StudyResult& result, double high) {
   return text;
 }
 
+bool tells_gain(const StudyResult& result) {
+  return std::any_of(gains.begin(), gains.end(), [&](const Gain& gain) {
+    return std::isfinite((result.*gain.goal).gain.mean);
+  });
+}
+
+/// Why a row has no gain.
+std::string why_empty(const StudyResult& result) {
+  if (result.compared == 0) return "density alone";
+  if (result.held_down == result.compared) return "machine lifts or drags";
+  return "no run with both digs";
+}
+
 Panel gain_panel(const std::vector<StudyResult>& results) {
   Panel panel("", "gain of the planned dig [%]", "");
   double low = 0.0;
@@ -114,6 +127,9 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     const std::string beyond = gains_beyond(results[i], high);
     if (!beyond.empty()) panel.label({high, row_of(i)}, beyond + " % →");
+    if (!tells_gain(results[i])) {
+      panel.label({0.5 * high, row_of(i)}, why_empty(results[i]));
+    }
   }
   return panel;
 }
@@ -140,7 +156,10 @@ Figure study_figure(const std::vector<StudyResult>& results) {
   Figure figure;
   figure.title = "Gain and density error by condition";
   figure.rows = {{gain_panel(results), error_panel(results)}};
-  figure.note = "Intervals: 95 %, over the runs.";
+  figure.note =
+      "Intervals: 95 %, over the runs. →: gains beyond the axis, in the order of the legend. "
+      "Machine "
+      "lifts or drags: the fixed dig would move it, and no gain can be told.";
   return figure;
 }
 

@@ -9,18 +9,12 @@
 #include "figures/dig_figures.hpp"
 
 namespace excavplan {
-namespace {
-
-std::string section_of(const DugDig& dug) { return to_svg(lay_out(section_figure(dug))); }
-
-}  // namespace
-
 Report survey_report(const ChangeSheet& sheet) {
   Report report;
   report.title = "Relative density of the ground from two scans";
   report.headline = {"density_percent", "bulking_factor", "volume.excavated_m3",
                      "volume.spilled_m3", "volume.dumped_m3"};
-  report.plot = to_svg(lay_out(height_change_figure(sheet)));
+  set_plot(report, height_change_figure(sheet));
   report.plot_always = true;
   report.scene.areas = surveyed_areas(sheet.change, sheet.before);
   report.scene.zones = sheet.change.zones;
@@ -32,8 +26,8 @@ Report survey_report(const ChangeSheet& sheet) {
 Report scene_report(const Machine& machine, const DigScene& scene) {
   Report report;
   report.title = scene_title(scene);
-  report.plot = section_of({machine, scene.path, scene.dig, boom_plane_profile(scene.before),
-                            boom_plane_profile(scene.after), report.title});
+  set_plot(report, section_figure({machine, scene.path, scene.dig, boom_plane_profile(scene.before),
+                                   boom_plane_profile(scene.after), report.title}));
   report.headline = {"payload_mass_kg", "energy_kj",     "efficiency_kg_per_kj",
                      "duration_s",      "peak_force_kn", "bulking_factor"};
   report.scene.areas = {{{{"before", scene.before.surface()}, {"after", scene.after.surface()}}}};
@@ -59,8 +53,8 @@ Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& 
     return report;
   }
   const Terrain after = dig->after(site.ground);
-  report.plot = section_of({machine, plan.path, *dig, boom_plane_profile(site.ground),
-                            boom_plane_profile(after), report.title});
+  set_plot(report, section_figure({machine, plan.path, *dig, boom_plane_profile(site.ground),
+                                   boom_plane_profile(after), report.title}));
   report.scene.areas.front().states.push_back({"planned", after.surface()});
   report.scene.digs = {{"planned dig", plan.path, plan.trajectory, dig->history}};
   report.note = "Planned ground and loads are those of the planned dig, simulated once at " +

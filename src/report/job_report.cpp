@@ -37,7 +37,7 @@ Report estimate_report(const JobEstimate& estimate, const std::optional<JobCost>
   report.title = (job.design.empty() ? "Job" : job.design) + " in " + job.soil + ", " +
                  job.machine + ": estimate";
   report.headline = {"digs", "time_min", "fuel_l", "truckloads", "cost"};
-  report.plot = to_svg(lay_out(job_estimate_figure(estimate, cost)));
+  set_plot(report, job_estimate_figure(estimate, cost));
   report.plot_always = true;
   for (const std::string& each : estimate.unlike) {
     report.fault += (report.fault.empty() ? "Not trustworthy: " : "; ") + each;

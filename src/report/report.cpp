@@ -6,7 +6,7 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "drawing/drawing.hpp"
+#include "drawing/plot.hpp"
 #include "report/report_body.hpp"
 #include "report/report_figures.hpp"
 
@@ -43,21 +43,30 @@ std::string warning_list(const std::vector<Warning>& warnings) {
   return list + "</ul></section>\n";
 }
 
-/// @param all  with the defaults
-std::string setting_section(const std::vector<Setting>& settings, bool all) {
+std::string setting_table(const std::vector<Setting>& settings, bool given) {
   std::string rows;
   for (const Setting& setting : settings) {
-    if (!all && !setting.given) continue;
-    rows += std::string("<tr") + (setting.given ? " class=\"given\"" : "") +
-            "><th scope=\"row\"><code>" + html(setting.name) + "</code></th><td>" +
-            html(setting.value) + "</td><td>" + (setting.given ? "given" : "default") +
-            "</td></tr>\n";
+    if (setting.given != given) continue;
+    rows += std::string("<tr") + (given ? " class=\"given\"" : "") + "><th scope=\"row\"><code>" +
+            html(setting.name) + "</code></th><td>" + html(setting.value) + "</td></tr>\n";
   }
   if (rows.empty()) return "";
-  return "<section id=\"settings\">\n<h2>Inputs and settings</h2>\n"
-         "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">option</th>"
-         "<th scope=\"col\">value</th><th scope=\"col\">origin</th></tr></thead>\n<tbody>\n" +
-         rows + "</tbody></table></div>\n</section>\n";
+  return "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">option</th>"
+         "<th scope=\"col\">value</th></tr></thead>\n<tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+/// What was given; the rest, which matters to few, is folded.
+/// @param all  with the defaults
+std::string setting_section(const std::vector<Setting>& settings, bool all) {
+  const std::string given = setting_table(settings, true);
+  const std::string left = all ? setting_table(settings, false) : "";
+  if (given.empty() && left.empty()) return "";
+  return "<section id=\"settings\">\n<h2>Inputs and settings</h2>\n" + given +
+         (left.empty() ? ""
+                       : "<details><summary>All others, at their defaults</summary>\n" + left +
+                             "</details>\n") +
+         "</section>\n";
 }
 
 std::string printed(const std::vector<std::string>& lines) {
@@ -68,12 +77,33 @@ std::string printed(const std::vector<std::string>& lines) {
          "</pre>\n</details>\n";
 }
 
-/// The plot as a part of the page, without the head of a file.
+/// Without the head of a file.
+std::string svg_of(const std::string& plot) {
+  const std::size_t start = plot.find("<svg");
+  return start == std::string::npos ? "" : plot.substr(start);
+}
+
+/// With names of its own, as those of a page are unique.
+std::string renamed(std::string svg) {
+  for (const std::string before : {"id=\"", "url(#"}) {
+    for (std::size_t at = 0; (at = svg.find(before + "clip", at)) != std::string::npos;) {
+      at += before.size();
+      svg.insert(at, "narrow-");
+    }
+  }
+  return svg;
+}
+
+/// The plot as a part of the page.
 std::string plot_part(const Report& report) {
-  const std::size_t start = report.plot.find("<svg");
-  if (start == std::string::npos) return "";
+  std::string plot = svg_of(report.plot);
+  if (plot.empty()) return "";
+  if (!report.narrow_plot.empty()) {
+    plot = "<div class=\"spacious\">" + plot + "</div><div class=\"narrow\">" +
+           renamed(svg_of(report.narrow_plot)) + "</div>";
+  }
   return std::string("<figure class=\"plot") + (report.plot_always ? "" : " fallback") + "\">" +
-         report.plot.substr(start) + "</figure>\n";
+         plot + "</figure>\n";
 }
 
 ReportBody body_of(const Report& report) {
@@ -82,6 +112,12 @@ ReportBody body_of(const Report& report) {
 }
 
 }  // namespace
+
+void set_plot(Report& report, const Figure& figure) {
+  constexpr double phone = 85.0;  // [mm]
+  report.plot = to_svg(lay_out(figure));
+  report.narrow_plot = to_svg(lay_out(figure, {phone, {}}));
+}
 
 nlohmann::ordered_json changing_parts(const Report& report, const ReportedRun& run) {
   const auto result = parse_ordered_json("the result", run.json);

@@ -17,12 +17,15 @@
 
 namespace excavplan {
 
+struct Figure;
+
 /// What a page is about, beside the run.
 struct Report {
   std::string title;
   std::vector<std::string> headline;  ///< keys of the result that come first, "cycle.energy_kj"
-  std::string plot;          ///< SVG; on paper and where nothing can be drawn in three dimensions
-  bool plot_always = false;  ///< the plot shows what nothing else on the page does
+  std::string plot;  ///< SVG; on paper and where nothing can be drawn in three dimensions
+  std::string narrow_plot = {};  ///< the same for a phone; empty: the plot, made smaller
+  bool plot_always = false;      ///< the plot shows what nothing else on the page does
   ReportScene scene = {};
   std::optional<ReportJob> job = {};  ///< that the page is about, in place of a scene
   std::string state = {};             ///< "Not finished: ..."; empty: as the run says
@@ -32,6 +35,9 @@ struct Report {
   /// Address of the events that keep a page about a job up to date; empty: it stays as it is.
   std::string stream = {};
 };
+
+/// Lays a figure out for the page, and for a phone.
+void set_plot(Report& report, const Figure& figure);
 
 /// What of a page changes as its job goes on, for data/report/app/live.js: HTML by the name of the
 /// part, and the result.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -44,7 +45,7 @@ constexpr std::array<Unit, 24> units = {{{"_kj_per_design_m3", "kJ/m³"},
                                          {"_kw", "kW"},
                                          {"_nm", "N m"},
                                          {"_w", "W"},
-                                         {"_l", "l"},
+                                         {"_l", "L"},
                                          {"_s", "s"},
                                          {"_m", "m"}}};
 
@@ -72,8 +73,20 @@ std::string stem_of(const std::string& key) {
   return key.substr(0, key.size() - suffix_of(key).size());
 }
 
+/// What a page calls a figure whose key is short.
+const std::map<std::string, std::string> plain_names = {
+    {"rms", "rms error"},
+    {"p95", "95 % of errors are below"},
+    {"beyond_twice", "beyond twice the tolerance"},
+    {"seen", "seen by scans"},
+    {"left", "still to dig"},
+    {"overdig", "dug too deep"},
+    {"keep_out", "changed in keep-outs"}};
+
 /// "payload_mass" -> "payload mass"
 std::string words_of(std::string stem) {
+  const auto plain = plain_names.find(stem);
+  if (plain != plain_names.end()) return plain->second;
   std::replace(stem.begin(), stem.end(), '_', ' ');
   return stem;
 }
@@ -258,26 +271,31 @@ std::vector<std::string> columns_of(const Json& list) {
   return columns;
 }
 
+/// "gain [%]"
+std::string column_name(const std::string& key) {
+  const std::string unit = shown_unit(key);
+  return words_of(stem_of(key)) + (unit.empty() ? "" : " [" + unit + "]");
+}
+
 std::string list_cell(const std::string& path, const Json& object, const std::string& key) {
+  const std::string label = attribute("data-label", column_name(key));
   const auto value = object.find(key);
   if (value == object.end() || value->is_null() || value->is_object()) return "<td></td>";
   if (value->is_array()) {
-    return cell(attribute("data-key", path) + attribute("data-value", value->dump()),
+    return cell(label + attribute("data-key", path) + attribute("data-value", value->dump()),
                 list_text(*value, "; "));
   }
   const Entry figure = entry_of(object, key);
-  return cell(exact(path, figure) + attribute("class", value->is_number() ? "number" : "text"),
-              value_text(figure));
+  return cell(
+      label + exact(path, figure) + attribute("class", value->is_number() ? "number" : "text"),
+      value_text(figure));
 }
 
 /// A row for each object of a list. Objects in them get a table of their own.
 std::string list_table(const std::string& name, const Json& list) {
   const std::vector<std::string> columns = columns_of(list);
   std::string head;
-  for (const std::string& key : columns) {
-    const std::string unit = shown_unit(key);
-    head += head_cell(words_of(stem_of(key)) + (unit.empty() ? "" : " [" + unit + "]"));
-  }
+  for (const std::string& key : columns) head += head_cell(column_name(key));
   std::string rows;
   std::string below;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -318,7 +336,8 @@ std::string matrix_table(const std::string& name, const Json& matrix) {
     rows += "<tr><th scope=\"row\">" + xml_escaped(capital(words_of(stem_of(of)))) + "</th>";
     for (const auto& [key, value] : matrix.front().items()) {
       const Entry figure = entry_of(row, key);
-      rows += cell(exact(joined(joined(name, of), key), figure) + attribute("class", "number"),
+      rows += cell(attribute("data-label", words_of(key)) +
+                       exact(joined(joined(name, of), key), figure) + attribute("class", "number"),
                    readable(row.at(key).get<double>(), 2));
     }
     rows += "</tr>\n";

@@ -44,16 +44,16 @@ const Words run_pair = {shipped("recordings/fixed.csv"),
 const std::vector<Drawn> of_dig = {
     {"section", {"x from the swing axis [m]", "z [m]", "ground before", "soil in the bucket"}},
     {"forces", {"force [kN]", "soil in bucket [kg]", "time since the dig began [s]"}},
-    {"torques", {"boom [kN m]", "arm [kN m]", "bucket [kN m]", "limit"}},
+    {"torques", {"boom [kN m]", "arm [kN m]", "bucket [kN m]", "limit of the boom 400 kN m"}},
     {"power", {"power [kW]", "energy [kJ]"}},
     {"cylinders", {"boom [MPa]", "pressure", "penetrate"}}};
 
 std::vector<Job> jobs() {
   std::vector<Drawn> of_plan = of_dig;
-  of_plan.push_back({"search", {"digs evaluated", "[kg/kJ]", "best so far"}});
+  of_plan.push_back({"search", {"digs evaluated", "[kg/kJ]", "best so far", "best [kg/kJ]"}});
   of_plan.push_back({"landscape",
                      {"penetration angle [deg]", "penetration length [m]", "drag length [m]",
-                      "cannot be dug", "planned dig"}});
+                      "cannot be dug", "planned dig", "at drag length", "at penetration angle"}});
   return {{"simulate-dig", {"--density", "40"}, of_dig},
           {"plan-path", {"--density", "40", "--search", "--evaluations", "60"}, of_plan},
           {"estimate-density",
@@ -307,6 +307,31 @@ TEST(StudyFigure, HasARowForEachConditionAndTheGains) {
     EXPECT_TRUE(contains(svg, "slope, +5 deg"));
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(circles(svg, "r=\"1.3\" fill=\"#0072b2\""), 3U) << width;
+  }
+}
+
+TEST(StudyFigure, SaysWhyARowIsEmptyAndCutsNoWord) {
+  std::vector<StudyResult> results(4);
+  for (StudyResult& result : results) {
+    result.condition = {};
+    result.condition.factor = "second dig";
+    result.condition.level = "on the ground that the first one left";
+    result.compared = 30;
+    for (const auto goal : {&StudyResult::energy, &StudyResult::equal, &StudyResult::cycle}) {
+      (result.*goal).gain = {std::nan(""), {}, 0};
+    }
+  }
+  results[0].energy.gain = {40.0, {30.0, 50.0}, 30};
+  results[1].held_down = 30;
+  results[2].compared = 0;
+  for (const double width : {85.0, 170.0}) {
+    const std::string svg = to_svg(lay_out(study_figure(results), {width, {}}));
+    expect_legible(svg, "study");
+    EXPECT_TRUE(contains(svg, ">machine lifts or drags<")) << width;
+    EXPECT_TRUE(contains(svg, ">density alone<"));
+    EXPECT_TRUE(contains(svg, ">no run with both digs<"));
+    EXPECT_FALSE(contains(svg, "…")) << width;
+    EXPECT_TRUE(contains(svg, "first one left<"));
   }
 }
 

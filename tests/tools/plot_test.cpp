@@ -93,6 +93,30 @@ TEST(Panel, MirroredXGrowsToTheLeft) {
   EXPECT_GT(x_of("3"), x_of("7"));
 }
 
+TEST(Panel, StatesHowMuchLongerAMetreIsUpwards) {
+  Panel panel("hole", "x [m]", "z [m]");
+  panel.view({0.0, 0.0, 10.0, 1.0});
+  panel.shape(0.5);
+  panel.state_exaggeration();
+  const Figure figure = {"f", {{panel}}};
+  const auto shows = [&](const SheetSize& size, const char* text) {
+    return to_svg(lay_out(figure, size)).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(shows({}, ">hole, heights × 5.0</text>"));  // 0.5 of the width for a tenth of x
+  EXPECT_FALSE(shows({170.0, 45.0}, "heights × 5.0"));    // lower axes
+}
+
+TEST(Panel, LowAxesHaveTwoNumbers) {
+  Panel panel("", "x", "y");
+  panel.view({0.0, -64.0, 1.0, 75.0});
+  panel.shape(0.1);
+  panel.least_height(20.0);
+  const std::string svg = to_svg(lay_out({"f", {{panel}}}, {85.0, {}}));
+  for (const char* number : {">−50</text>", ">0</text>", ">50</text>"}) {
+    EXPECT_NE(svg.find(number), std::string::npos) << number;
+  }
+}
+
 TEST(LayOut, SizesAreThoseAskedFor) {
   Panel panel("", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}}, {});
@@ -392,8 +416,8 @@ TEST(HeightChangeFigure, OutlinesAreClosedLinesSoThatTheirDashesShow) {
 TEST(HeightChangeFigure, ShowsSectionsThroughHoleAndHeap) {
   const Survey survey;
   const std::string svg = change_svg(survey.sheet);
-  EXPECT_NE(svg.find(">section through the hole, y = 1.25 m</text>"), std::string::npos);
-  EXPECT_NE(svg.find(">section through the heap, "), std::string::npos);
+  EXPECT_NE(svg.find(">hole, section at y = 1.25 m, heights × "), std::string::npos);
+  EXPECT_NE(svg.find(">heap, section at "), std::string::npos);
   for (const char* legend : {"ground before", "ground after", "95 % band of a cell", "section"}) {
     EXPECT_EQ(count(svg, ">" + std::string(legend) + "</text>"), 1U) << legend;
   }
@@ -540,6 +564,26 @@ double area_of(const Points& polygon) {
     sum += 0.5 * (p.x() * q.y() - q.x() * p.y());
   }
   return std::abs(sum);
+}
+
+/// Whether a ray to the right of a point leaves a polygon an odd number of times.
+bool is_inside(const Points& polygon, const Eigen::Vector2d& at) {
+  bool inside = false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& p = polygon[i];
+    const Eigen::Vector2d& q = polygon[(i + 1) % polygon.size()];
+    if ((p.y() > at.y()) == (q.y() > at.y())) continue;
+    const double x = p.x() + (at.y() - p.y()) / (q.y() - p.y()) * (q.x() - p.x());
+    if (x > at.x()) inside = !inside;
+  }
+  return inside;
+}
+
+TEST_F(SectionFigure, TheCylinderOfTheBucketEndsOnTheArm) {
+  for (const DigPose& pose : path.poses) {
+    const MachineOutline outline = machine_outline(machine, pose.joints);
+    EXPECT_TRUE(is_inside(outline.arm, outline.cylinders[2].front()));
+  }
 }
 
 TEST_F(SectionFigure, SoilInTheBucketHasItsVolume) {

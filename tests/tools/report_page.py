@@ -129,6 +129,26 @@ return faint;
 """
 
 
+# What holds more than it is wide, with all that is folded unfolded.
+SIDEWAYS = """
+for (const each of document.querySelectorAll("details")) each.open = true;
+return [...document.querySelectorAll("main, main *")]
+  .filter((each) => ["auto", "scroll"].includes(getComputedStyle(each).overflowX))
+  .filter((each) => each.scrollWidth > each.clientWidth + 1)
+  .map((each) => `${each.tagName} ${each.className}: ${each.scrollWidth} > ${each.clientWidth}`);
+"""
+# Parts of the page that share ground with the slider.
+COVERED = """
+const box = (each) => each.getBoundingClientRect();
+const player = document.getElementById("player");
+const a = box(player);
+return [...document.querySelectorAll("#scene > *, header, footer, #figures")]
+  .filter((each) => each !== player && box(each).height)
+  .filter((each) => box(each).top < a.bottom - 1 && box(each).bottom > a.top + 1)
+  .map((each) => each.id || each.tagName);
+"""
+
+
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -304,11 +324,13 @@ class Page(unittest.TestCase):
             pictures.append(self.picture())
         self.assertEqual(pictures[0], pictures[-1], "R resets the view")
         self.assertEqual(len(set(pictures)), 4)
-        for state in ("before", "change"):
+        shown = self.driver.find_element(By.CSS_SELECTOR, "[data-state=change]")
+        self.assertEqual(shown.get_attribute("aria-pressed"), "true", "the change is the first view")
+        for state in ("before", "after"):
             self.driver.find_element(By.CSS_SELECTOR, f"[data-state={state}]").send_keys(Keys.ENTER)
             pictures.append(self.picture())
         self.assertEqual(len(set(pictures)), 6)
-        self.assertEqual(self.driver.find_element(By.CSS_SELECTOR, "[data-state=change]").get_attribute("aria-pressed"), "true")
+        self.assertEqual(shown.get_attribute("aria-pressed"), "false")
         self.silent()
 
     def test_readable_at_both_widths_in_light_and_dark(self):
@@ -319,6 +341,19 @@ class Page(unittest.TestCase):
                     self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)
                     self.assertEqual(self.script(FAINT), [], f"{tool}, {scheme}, {width} px")
                     self.silent()
+
+    def test_nothing_scrolls_sideways_on_a_phone(self):
+        for tool in PAGES:
+            self.open(tool, 420)
+            wide = self.script(SIDEWAYS)
+            self.assertEqual(wide, [], tool)
+
+    def test_slider_covers_nothing_on_a_desk(self):
+        for tool in [*DUG, "simulate-site"]:
+            self.open(tool, 1600)
+            for top in (0, 400, 10000):
+                self.script("window.scrollTo(0, arguments[0])", top)
+                self.assertEqual(self.script(COVERED), [], f"{tool}, scrolled by {top} px")
 
     def test_prints(self):
         for tool in PAGES:

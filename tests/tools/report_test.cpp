@@ -11,6 +11,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/sensing/scene.hpp>
 
+#include "drawing/plot.hpp"
 #include "report/dig_report.hpp"
 #include "report/report_figures.hpp"
 #include "support/report_page.hpp"
@@ -172,12 +173,33 @@ TEST(ReportPage, ShowsValueErrorIntervalAndUnit) {
         "<td>%</td><td>35.4 .. 47.6</td>",
         ">0.2675 ± 0.0021</td><td>m³</td>", "By phase, drag", ">12.2</td><td>kJ</td>",
         "rad (45.0°)",
-        "<td data-key=\"soils.0.weight\" data-value=\"0.31\" class=\"number\">0.310</td>",
+        "<td data-label=\"weight\" data-key=\"soils.0.weight\" data-value=\"0.31\" "
+        "class=\"number\">0.310</td>",
         "Loam: payload", "kg/m³", "density [%]"}) {
     EXPECT_TRUE(contains(tables, part)) << part << '\n' << tables;
   }
   EXPECT_FALSE(contains(tables, "blocks"));
   EXPECT_FALSE(contains(tables, "density sd"));
+}
+
+TEST(ReportPage, AddsAPlotForAPhoneWithNamesOfItsOwn) {
+  Report report =
+      survey_page(flat_ground({0.0, 0.0, 1.0, 1.0}, 0.1), flat_ground({0.0, 0.0, 1.0, 1.0}, 0.1));
+  Panel panel("", "x", "y");
+  panel.line({{0.0, 0.0}, {1.0, 1.0}}, {});
+  set_plot(report, {"t", {{panel}}});
+  const std::string page = html_page(report, plain_run());
+  for (const char* name : {"\"clip0\"", "\"narrow-clip0\"", "url(#narrow-clip0)"}) {
+    const std::size_t at = page.find(name);
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_EQ(page.find(name, at + 1), std::string::npos) << name << " is there twice";
+  }
+}
+
+TEST(ReportPage, CallsShortKeysByPlainNames) {
+  const auto result = nlohmann::ordered_json::parse(R"({"p95_m": 0.08, "overdig_percent": 4.1})");
+  EXPECT_TRUE(contains(headline_tiles(result, {"p95_m"}), "<dt>95 % of errors are below</dt>"));
+  EXPECT_TRUE(contains(figure_tables(result), ">Dug too deep</th>"));
 }
 
 TEST(ReportPage, HeadlineIsOfWhatThereIs) {

@@ -54,7 +54,7 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
   }
   Figure plot = paths_figure(experiments);
   plot.rows.push_back(efficiency_figure(experiments).rows.front());
-  report.plot = to_svg(lay_out(plot));
+  set_plot(report, plot);
   report.note =
       "Ground and loads are those of the dig that is chosen, on level ground; the payload "
       "stays in the bucket.";

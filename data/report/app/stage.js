@@ -152,7 +152,7 @@ const makeStage = () => {
   element("exaggerate").addEventListener("click", (event) => {
     const scale = scales[(scales.indexOf(tall.scale.z) + 1) % scales.length];
     tall.scale.z = scale;
-    event.currentTarget.textContent = `z × ${scale}`;
+    event.currentTarget.textContent = `heights × ${scale}`;
     event.currentTarget.setAttribute("aria-pressed", String(scale !== 1));
     ask();
   });

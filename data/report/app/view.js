@@ -137,7 +137,7 @@ const makeView = () => {
       htmlElement("div", { textContent: "drawn coarser than surveyed" }, node);
   };
 
-  let shown = kinds[Math.min(1, kinds.length - 1)];
+  let shown = kinds.includes("change") ? "change" : kinds[Math.min(1, kinds.length - 1)];
   const show = (kind) => {
     shown = kind;
     ground.show(kind);
