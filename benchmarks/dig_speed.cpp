@@ -234,7 +234,7 @@ class Listening : public SoilSimulator {
   mutable std::vector<DigPath> paths_;
 };
 
-/// As plan_dig() searches in certain soil.
+/// As plan_dig() searches in certain soil where it does not screen.
 DigSearchOptions usual_search(std::uint64_t seed) {
   DigSearchOptions options = budget_search();
   options.seed = seed;
@@ -295,7 +295,9 @@ void search_both(const SoilSimulator& simulator, const Terrain& ground, std::uin
   const double begin = processor_time();
   const auto usual = search_dig(zx120(), simulator, ground, options);
   const double between = processor_time();
-  const auto screened = search_screened(zx120(), simulator, ground, options);
+  DigSearchOptions on_coarse_ground = options;
+  on_coarse_ground.stop.evaluations = 280;  // of plan_dig()
+  const auto screened = search_screened(zx120(), simulator, ground, on_coarse_ground);
   const double end = processor_time();
   const double worth = usual ? usual->worth : 0.0;
   std::printf("%.4g %+.2f %%  %.3f %.3f s\n", worth,

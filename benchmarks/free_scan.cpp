@@ -169,8 +169,8 @@ class FreeScan {
           path = layout.path_from(dig, random.uniform(scene.machine.track_front, reach));
         }
         if (!std::holds_alternative<DigPath>(path)) continue;
-        const auto dug = dig_along(scene.machine, simulator, scene.ground, std::get<DigPath>(path),
-                                   options_.objective);
+        const auto dug = dig_of_path(scene.machine, simulator, scene.ground,
+                                     std::get<DigPath>(path), options_.objective);
         if (!std::holds_alternative<PlannedDig>(dug)) continue;
         const std::lock_guard<std::mutex> lock(mutex);
         best = std::max(best, options_.objective.rank(std::get<PlannedDig>(dug)));

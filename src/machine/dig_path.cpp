@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/machine/dig_trials.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
@@ -156,21 +157,27 @@ class Layout {
   }
 
   std::optional<Infeasible> lay_out(double start_x) {
-    path_.start_x = start_x;
-    path_.ground_z = ground_(start_x);
-    path_.poses.clear();
-    path_.limit_margin = {std::numeric_limits<double>::infinity(), Joint::boom};
+    if (auto stopped = dig(start_x)) return stopped;
+    return sampling_ == Sampling::ends ? std::nullopt : lift();
+  }
+
+  /// All but the lift.
+  std::optional<Infeasible> dig(double start_x) {
+    begin(start_x);
     if (!std::isfinite(path_.ground_z)) {
       return stop(Reason::unknown_ground, start_x, 0.0, first_phase(), 0.0);
     }
     if (auto stopped = penetrate()) return stopped;
     if (auto stopped = drag()) return stopped;
-    if (auto stopped = scoop()) return stopped;
-    return sampling_ == Sampling::ends ? std::nullopt : lift();
+    return scoop();
   }
+  std::optional<Infeasible> lift();
+
+  bool misses_an_end(double start_x);
 
   std::variant<std::vector<DigPose>, Infeasible> way_up(const DigPath& path);
 
+  const DigPath& path() const { return path_; }
   DigPath take() { return std::move(path_); }
 
   /// The margin that the choice of the start point maximises [rad].
@@ -184,9 +191,15 @@ class Layout {
   std::optional<Infeasible> penetrate();
   std::optional<Infeasible> drag();
   std::optional<Infeasible> scoop();
-  std::optional<Infeasible> lift();
   std::optional<Infeasible> raise(DigPose pose);
   std::optional<Infeasible> raise_to_floor(DigPose& pose, double& raised, double turned);
+
+  void begin(double start_x) {
+    path_.start_x = start_x;
+    path_.ground_z = ground_(start_x);
+    path_.poses.clear();
+    path_.limit_margin = {std::numeric_limits<double>::infinity(), Joint::boom};
+  }
 
   DigPhase first_phase() const {
     if (path_.parameters.penetration_length > 0.0) return DigPhase::penetrate;
@@ -212,7 +225,10 @@ class Layout {
     return stopped;
   }
 
+  std::optional<Infeasible> find_stop(double distance, const DigPose& pose) const;
   std::optional<Infeasible> add(double distance, const DigPose& pose);
+  std::optional<Infeasible> solve_penetration(DigPose& pose, const Eigen::Vector2d& onwards,
+                                              double s) const;
   double floor_at(double x) const;
   double tip_above_floor(double s) const;
   double length_to_floor(double length) const;
@@ -242,7 +258,7 @@ int Layout::steps(double tip_travel) const {
   return static_cast<int>(needed);
 }
 
-std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
+std::optional<Infeasible> Layout::find_stop(double distance, const DigPose& pose) const {
   const double depth = path_.ground_z - pose.bucket.z;
   if (depth > options_.max_depth) {
     return stop(Reason::too_deep, depth, options_.max_depth, pose.phase, distance);
@@ -251,6 +267,11 @@ std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
   if (pose.bucket.x < foremost) {
     return stop(Reason::too_near_tracks, pose.bucket.x, foremost, pose.phase, distance);
   }
+  return std::nullopt;
+}
+
+std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
+  if (auto stopped = find_stop(distance, pose)) return stopped;
   const LimitMargin margin = limit_margin(machine_, pose.joints);
   if (margin.margin < path_.limit_margin.margin) path_.limit_margin = margin;
   path_.poses.push_back(pose);
@@ -311,22 +332,53 @@ std::optional<Infeasible> Layout::penetrate() {
     path_.parameters.penetration_length = length;
     path_.meets_floor = true;
   }
-  const double inwards = std::cos(angle), down = std::sin(angle);
+  const Eigen::Vector2d onwards(-std::cos(angle), -std::sin(angle));
   const int count = length > 0.0 ? steps(length) : 0;
   for (int i = 0; i <= count; i += stride(count)) {
     const double s = count > 0 ? length * i / count : 0.0;
     DigPose pose;
-    pose.phase = first_phase();
-    pose.bucket = {path_.start_x - s * inwards, first_z_ - s * down,
-                   angle + options_.penetration_clearance};
-    const auto joints = inverse_kinematics(machine_, pose.bucket);
-    if (const auto* failed = std::get_if<Unreachable>(&joints)) {
-      return stop(pose.phase, s, *failed);
-    }
-    pose.joints = std::get<JointAngles>(joints);
+    if (auto stopped = solve_penetration(pose, onwards, s)) return stopped;
     if (auto stopped = add(s, pose)) return stopped;
   }
   return std::nullopt;
+}
+
+/// The pose of the penetration so far along its line.
+std::optional<Infeasible> Layout::solve_penetration(DigPose& pose, const Eigen::Vector2d& onwards,
+                                                    double s) const {
+  pose.phase = first_phase();
+  pose.bucket = {path_.start_x + s * onwards.x(), first_z_ + s * onwards.y(),
+                 path_.parameters.penetration_angle + options_.penetration_clearance};
+  const auto joints = inverse_kinematics(machine_, pose.bucket);
+  if (const auto* failed = std::get_if<Unreachable>(&joints)) return stop(pose.phase, s, *failed);
+  pose.joints = std::get<JointAngles>(joints);
+  return std::nullopt;
+}
+
+/// Whether dig() stops for the last pose of penetration, drag or scoop: that costs little to find.
+/// Without a floor no pose depends on those between.
+bool Layout::misses_an_end(double start_x) {
+  if (options_.floor) return false;
+  begin(start_x);
+  if (!std::isfinite(path_.ground_z)) return true;
+  first_z_ = path_.ground_z;
+  const auto last = [&](double length) { return length * steps(length) / steps(length); };
+  const double angle = path_.parameters.penetration_angle;
+  const double length = std::min(path_.parameters.penetration_length, longest_line());
+  const double down = length > 0.0 ? last(length) : 0.0;
+  DigPose pose;
+  if (solve_penetration(pose, {-std::cos(angle), -std::sin(angle)}, down)) return true;
+  if (find_stop(down, pose)) return true;
+  const double dragged = std::min(path_.parameters.drag_length, longest_line());
+  if (dragged > 0.0) {
+    const DigPose start = pose;
+    pose.bucket.x -= last(dragged);
+    pose.bucket.z -= last(dragged) * std::tan(options_.drag_grade);
+    if (solve_drag(pose, start, dragged) || find_stop(dragged, pose)) return true;
+  }
+  const double turn = pose.bucket.floor_angle + beta_;
+  const int count = steps(turn * machine_.bucket_length);
+  return turn * count / count > machine_.limits[2].upper - pose.joints[2];
 }
 
 /// Joints and floor angle of a pose of the drag whose tip is given.
@@ -650,6 +702,20 @@ std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
     stopped->message = explain(*stopped);
     return *std::move(stopped);
   }
+  return layout.take();
+}
+
+DigTrials::DigTrials(const Machine& machine, const DigParameters& parameters,
+                     const GroundProfile& ground, const DigPathOptions& options)
+    : machine_(machine), parameters_(parameters), ground_(ground), options_(options) {
+  check(machine, ground, options);
+}
+
+std::optional<DigPath> DigTrials::from(double start_x, const Judge& judge) const {
+  if (find_bad_parameter(parameters_, start_x)) return std::nullopt;
+  Layout layout(machine_, parameters_, ground_, options_, Sampling::full);
+  if (layout.misses_an_end(start_x) || layout.dig(start_x)) return std::nullopt;
+  if (!judge(layout.path()) || layout.lift()) return std::nullopt;
   return layout.take();
 }
 

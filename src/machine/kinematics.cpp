@@ -79,9 +79,10 @@ LinkPositions link_positions(const Machine& machine, const JointAngles& joints) 
   at.phi1 = -joints[0];
   at.phi2 = at.phi1 - joints[1];
   at.phi3 = at.phi2 - joints[2];
-  at.arm_pin = machine.boom_pin + machine.boom_length * direction(at.phi1);
-  at.bucket_pin = at.arm_pin + machine.arm_length * direction(at.phi2);
-  at.tip = at.bucket_pin + machine.bucket_length * direction(at.phi3);
+  at.along = {direction(at.phi1), direction(at.phi2), direction(at.phi3)};
+  at.arm_pin = machine.boom_pin + machine.boom_length * at.along[0];
+  at.bucket_pin = at.arm_pin + machine.arm_length * at.along[1];
+  at.tip = at.bucket_pin + machine.bucket_length * at.along[2];
   return at;
 }
 
@@ -135,12 +136,11 @@ JointAngles torque_against_force(const Machine& machine, const LinkPositions& at
 JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at,
                                        double swing) {
   const std::array<Vector2d, 3> pins = {machine.boom_pin, at.arm_pin, at.bucket_pin};
-  const std::array<double, 3> angles = {at.phi1, at.phi2, at.phi3};
   const Vector2d up = machine.up(swing);
   JointAngles torque = JointAngles::Zero();
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const LinkMass& link = machine.links[i];
-    const Vector2d along = direction(angles[i]);
+    const Vector2d& along = at.along[i];
     const Vector2d center =
         pins[i] + link.along * along + link.across * Vector2d(-along.y(), along.x());
     for (std::size_t j = 0; j <= i; ++j) {
@@ -151,7 +151,7 @@ JointAngles torque_against_link_weight(const Machine& machine, const LinkPositio
 }
 
 Vector2d bucket_point(const LinkPositions& at, const Vector2d& along_across) {
-  const Vector2d along = direction(at.phi3);
+  const Vector2d& along = at.along[2];
   return at.bucket_pin + along_across.x() * along +
          along_across.y() * Vector2d(-along.y(), along.x());
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planning/dig_layout.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -61,6 +62,15 @@ std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& para
                                                        double start_x,
                                                        const DigPathOptions& rules) const {
   return checked(make_dig_path(machine_, parameters, start_x, ground_, rules));
+}
+
+bool DigLayout::can_be_driven(const DigTrials& trials, double start_x,
+                              const DigTrials::Judge& judge) const {
+  const auto path = trials.from(start_x, judge);
+  if (!path) return false;
+  const double x_max = path->start_x + strip_.cell_size();
+  return std::none_of(path->poses.begin(), path->poses.end(),
+                      [&](const DigPose& pose) { return obstacle(pose, x_max).has_value(); });
 }
 
 std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& parameters,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/dig_trials.hpp>
 
 #include "planning/front_room.hpp"
 
@@ -37,6 +38,8 @@ class DigLayout {
   /// The same by other rules.
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& rules) const;
+  /// Of a trial by other rules whether all that path_from() checks holds.
+  bool can_be_driven(const DigTrials& trials, double start_x, const DigTrials::Judge& judge) const;
   std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   /// The way down to a path, as way_down(), and clear of the ground with boom and arm.
   std::variant<std::vector<DigPose>, Infeasible> approach(const DigPath& path) const;

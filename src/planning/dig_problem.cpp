@@ -229,6 +229,42 @@ DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
   return best;
 }
 
+Found<DigSearchResult> DigProblem::result_of(const SearchResult& found) const {
+  if (found.feasible()) return best_of(found).result;
+  Found<DigSearchResult> none;
+  none.nearest = nearest_of(found);
+  none.stopped = found.stopped_by == StopReason::cancelled;
+  none.evaluations = found.evaluations;
+  return none;
+}
+
+std::vector<KnownDig> DigProblem::best_apart(const SearchResult& found, int count) const {
+  constexpr double apart = 0.1;  // of the search ranges; ours
+  std::vector<const SearchRecord*> feasible;
+  for (const SearchRecord& record : found.history) {
+    const bool simulated = record.source == SearchRecord::Source::simulated;
+    if (simulated && record.outcome.ok()) feasible.push_back(&record);
+  }
+  std::stable_sort(feasible.begin(), feasible.end(), [](const auto* a, const auto* b) {
+    return a->outcome.fitness > b->outcome.fitness;
+  });
+  const UnitCube cube(box());
+  std::vector<VectorXd> chosen;
+  std::vector<KnownDig> digs;
+  for (const SearchRecord* record : feasible) {
+    if (static_cast<int>(digs.size()) == count) break;
+    const VectorXd& point = record->point;
+    if (std::any_of(chosen.begin(), chosen.end(), [&](const VectorXd& better) {
+          return cube.distance(point, better) <= apart;
+        })) {
+      continue;
+    }
+    chosen.push_back(point);
+    digs.emplace_back(to_dig_parameters(point), start_of(point));
+  }
+  return digs;
+}
+
 std::vector<const DigParameterInfo*> DigProblem::at_bound(const DigParameters& best) const {
   constexpr double near = 0.01;  // of the range; ours
   std::vector<const DigParameterInfo*> found;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -49,6 +50,10 @@ class DigProblem {
     DigsInEach digs;
   };
   Best best_of(const SearchResult& found) const;
+  /// That dig alone, or why there is none.
+  Found<DigSearchResult> result_of(const SearchResult& found) const;
+  /// At most so many of the feasible digs simulated, the best first, none near a better one.
+  std::vector<KnownDig> best_apart(const SearchResult& found, int count) const;
   /// Of a result without a feasible dig; nothing if it has no point at all.
   std::optional<NearestDig> nearest_of(const SearchResult& found) const;
 
@@ -83,5 +88,30 @@ void require_own_checkpoint(const Machine& machine, const SoilSimulator& simulat
                             const Terrain& terrain, const DigSearchOptions& options);
 void require_own_checkpoint(const Machine& machine, const std::vector<PossibleSoil>& soils,
                             const Terrain& terrain, const DigSearchOptions& options);
+
+// ---- searches in parts --------------------------------------------------------------------------
+
+inline int digs_of(const Found<DigSearchResult>& found) {
+  return found ? found->evaluations : found.evaluations;
+}
+inline bool was_stopped(const Found<DigSearchResult>& found) {
+  return found ? found->stopped : found.stopped;
+}
+
+/// Progress of a search that so many digs precede, of so many planned in all.
+std::function<bool(const SearchProgress&)> as_part_of(
+    const std::function<bool(const SearchProgress&)>& progress, int before, int planned);
+
+/// Counts the digs of an earlier search among those of `found`.
+void precede(const Found<DigSearchResult>& earlier, Found<DigSearchResult>& found);
+
+/// Searches the path first, with the start of least work: without a fourth number that finds the
+/// valley that the search goes on in. Only where the number of digs alone ends a search.
+/// @param options  of the search that follows, which goes on from there
+/// @return nothing if the search is not divided
+std::optional<Found<DigSearchResult>> search_by_least_work(const Machine& machine,
+                                                           const SoilSimulator& simulator,
+                                                           const Terrain& terrain,
+                                                           DigSearchOptions& options);
 
 }  // namespace excavplan

@@ -11,6 +11,7 @@
 
 #include <excavplan/base/ceilings.hpp>
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/screened_search.hpp>
 #include <excavplan/planning/standing_ground.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
@@ -34,8 +35,11 @@ constexpr double much_steeper =
     0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
-constexpr int least_to_divide = 60;    // digs of a search in two parts; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
+
+// Of a search that is screened; ours, docs/methods.md#planning.
+constexpr int screened_digs = 280;
+constexpr Screening on_ground_itself = {1, 1.0, 120};
 
 struct Task {
   const Machine& machine;  ///< as it stands
@@ -322,50 +326,6 @@ DigSearchOptions within_budget(const DigSearchOptions& search, bool uncertain) {
   return options;
 }
 
-/// Progress of a search that others precede or follow.
-std::function<bool(const SearchProgress&)> as_part_of(
-    const std::function<bool(const SearchProgress&)>& progress, int before, int planned) {
-  if (!progress) return nullptr;
-  return [=](SearchProgress now) {
-    now.evaluations += before;
-    now.planned = planned;
-    return progress(now);
-  };
-}
-
-int digs_of(const Found<DigSearchResult>& found) {
-  return found ? found->evaluations : found.evaluations;
-}
-
-bool was_stopped(const Found<DigSearchResult>& found) {
-  return found ? found->stopped : found.stopped;
-}
-
-/// Searches the path first, with the start of least work: without a fourth number that finds the
-/// valley that the search goes on in. Only where the number of digs alone ends a search.
-/// @param options  of the search that follows, which goes on from there
-/// @return nothing if the search is not divided
-std::optional<Found<DigSearchResult>> search_by_least_work(const Task& task,
-                                                           const SoilSimulator& simulator,
-                                                           DigSearchOptions& options) {
-  const StopRules& stop = options.stop;
-  const bool by_digs = std::holds_alternative<MemeticSearch>(options.method) &&
-                       stop.evaluations >= least_to_divide && stop.stall == 0 &&
-                       stop.seconds == 0.0 && !stop.target;
-  if (options.start_rule.kind != StartRule::Kind::searched || !by_digs) return std::nullopt;
-  const int budget = stop.evaluations;
-  DigSearchOptions first = options;
-  first.start_rule = StartRule::Kind::least_work;
-  first.checkpoint = {};
-  first.stop.evaluations = budget / 3;
-  first.progress = as_part_of(options.progress, 0, budget);
-  auto found = search_dig(task.machine, simulator, task.ground, first);
-  options.stop.evaluations = budget - digs_of(found);
-  options.progress = as_part_of(options.progress, digs_of(found), budget);
-  if (found) options.start.insert(options.start.begin(), found->dig.parameters);
-  return found;
-}
-
 /// @param best  of what was found, if anything was
 template <typename Result>
 void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan) {
@@ -393,18 +353,77 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
   plan.nearest = found.nearest;
 }
 
-void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
+void search_as_told(const Task& task, const SoilSimulator& simulator, DigSearchOptions options,
                     DigPlan& plan) {
   require_own_checkpoint(task.machine, simulator, task.ground, options);
-  const auto first = search_by_least_work(task, simulator, options);
-  const bool ended = first && was_stopped(*first);
-  const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
+  const auto first = search_by_least_work(task.machine, simulator, task.ground, options);
+  if (first && was_stopped(*first)) return take(*first, *first ? &**first : nullptr, plan);
+  auto found = search_dig(task.machine, simulator, task.ground, options);
+  if (first) precede(*first, found);
   take(found, found ? &*found : nullptr, plan);
-  if (!first || ended) return;
-  plan.evaluations += digs_of(*first);
-  if (!*first || !plan.search) return;
-  std::vector<double>& ranks = plan.search->ranks;
-  ranks.insert(ranks.begin(), (*first)->ranks.begin(), (*first)->ranks.end());
+}
+
+/// Whether the ground under the bucket, ahead of the machine, is a slope along the boom to within a
+/// cell (root of the mean square), on which nothing stands.
+bool is_even(const Machine& machine, const Terrain& ground) {
+  const HeightMap& bank = ground.bank;
+  const double slope = std::tan(boom_plane_slope(ground, machine.track_front));
+  const double half = 0.5 * machine.bucket.width_outside;
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
+      if (bank.x(col) < machine.track_front || std::abs(bank.y(row)) > half) continue;
+      if (ground.obstacles.size() > 0 && !std::isnan(ground.obstacles(row, col))) return false;
+      const double z = bank.z(row, col) + ground.loose(row, col) - slope * bank.x(col);
+      if (std::isnan(z)) continue;
+      count += 1.0;
+      sum += z;
+      squares += z * z;
+    }
+  }
+  const double cell = usual_cell(machine);
+  return squares * count - sum * sum <= cell * cell * count * count;
+}
+
+/// Whether a search is the default one in the default simulator, of which two fidelities are known.
+bool is_usual(const Task& task) {
+  const DigSearchOptions& search = task.options.search;
+  const StopRules& stop = search.stop;
+  return stop.evaluations == 0 && stop.stall == 0 && stop.seconds == 0.0 && !stop.target &&
+         std::holds_alternative<MemeticSearch>(search.method) &&
+         search.start_rule.kind == StartRule::Kind::searched &&
+         task.options.simulator.name == default_simulator().name;
+}
+
+/// A search for candidates and the polish of the best: the candidates on coarser ground, if that
+/// tells them. It does not where the ground bends or something stands, nor where no dig fills the
+/// bucket: there the best are at the edge of what the machine can.
+void search_usual(const Task& task, const SoilSimulator& simulator, DigSearchOptions options,
+                  DigPlan& plan) {
+  int made = 0;
+  const auto search = [&](const Screening& screening, int digs) {
+    DigSearchOptions part = options;
+    part.stop.evaluations = digs;
+    part.progress = as_part_of(options.progress, made, made + digs + screening.confirmed);
+    return search_screened(task.machine, simulator, task.ground, part, screening);
+  };
+  Found<DigSearchResult> found;
+  if (is_even(task.machine, task.ground)) found = search(Screening(), screened_digs);
+  const bool fills = found && found->dig.fill >= task.objective().min_fill;
+  if (!fills && !was_stopped(found)) {
+    const Found<DigSearchResult> coarse = std::exchange(found, {});
+    made = digs_of(coarse);
+    if (coarse) options.start.emplace_back(coarse->dig.parameters, coarse->dig.start_x);
+    found = search(on_ground_itself, options.stop.evaluations - on_ground_itself.confirmed);
+    precede(coarse, found);
+  }
+  take(found, found ? &*found : nullptr, plan);
+}
+
+void search_certain(const Task& task, const SoilSimulator& simulator,
+                    const DigSearchOptions& options, DigPlan& plan) {
+  const auto search = is_usual(task) ? search_usual : search_as_told;
+  search(task, simulator, options, plan);
 }
 
 /// The few digs for each soil do not find the valley on uneven ground: those for the most likely

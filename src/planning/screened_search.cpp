@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <excavplan/base/ceilings.hpp>
 
 #include "base/check.hpp"
 #include "ground/terrain.hpp"
-#include "planning/dig_attempts.hpp"
+#include "planning/dig_problem.hpp"
 
 namespace excavplan {
 namespace {
@@ -42,16 +45,58 @@ Eigen::ArrayXXd means(const Eigen::ArrayXXd& layer, int cells, const Weight& wei
   return coarse;
 }
 
-DigSearchOptions confirming(const DigSearchOptions& options, const DigSearchResult& screened,
+/// Polishes the candidates, and what was known before.
+DigSearchOptions confirming(const DigSearchOptions& options, std::vector<KnownDig> candidates,
                             int digs) {
-  DigSearchOptions confirm = polish_search(0, 1, digs / 2);
-  DigSearchOptions same = options;
-  same.method = confirm.method;
-  same.checkpoint = {};
-  same.resume = false;
-  same.stop.evaluations = digs;
-  same.start = {KnownDig(screened.dig.parameters, screened.dig.start_x)};
-  return same;
+  auto polish = std::get<MemeticSearch>(budget_search().method);
+  polish.first_generation = 0;
+  polish.basins = 2;
+  polish.polish_evaluations = 30;
+  DigSearchOptions confirm = options;
+  confirm.method = polish;
+  confirm.stop.evaluations = digs;
+  confirm.start = std::move(candidates);
+  confirm.start.insert(confirm.start.end(), options.start.begin(), options.start.end());
+  return confirm;
+}
+
+DigSearchOptions without_checkpoint(DigSearchOptions options) {
+  options.checkpoint = {};
+  options.resume = false;
+  return options;
+}
+
+/// Digs the candidates alone, of a search that was cancelled.
+DigSearchOptions only_digging(const DigSearchOptions& confirm) {
+  DigSearchOptions digs = without_checkpoint(confirm);
+  auto& method = std::get<MemeticSearch>(digs.method);
+  method.generations = method.basins = 0;
+  digs.progress = nullptr;
+  return digs;
+}
+
+/// What a search on coarser ground tells.
+struct Screened {
+  std::vector<KnownDig> candidates;
+  Found<DigSearchResult> result;
+};
+
+Screened screen(const Machine& machine, const SoilSimulator& simulator, const Terrain& terrain,
+                const DigSearchOptions& options, const Screening& screening) {
+  const Terrain coarse = screening.cells > 1 ? coarser(terrain, screening.cells) : terrain;
+  DigSearchOptions search = without_checkpoint(options);
+  search.rules.step *= screening.steps;
+  const auto first = search_by_least_work(machine, simulator, coarse, search);
+  if (first && was_stopped(*first)) {
+    if (!*first) return {{}, *first};
+    return {{KnownDig((*first)->dig.parameters, (*first)->dig.start_x)}, *first};
+  }
+  const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
+  DigProblem problem(machine, soils, coarse, search);
+  const SearchResult found = problem.run();
+  Screened screened{problem.best_apart(found, screening.candidates), problem.result_of(found)};
+  if (first) precede(*first, screened.result);
+  return screened;
 }
 
 }  // namespace
@@ -84,21 +129,31 @@ Found<DigSearchResult> search_screened(const Machine& machine, const SoilSimulat
   require(screening.steps >= 1.0 && std::isfinite(screening.steps), "screening: steps in one",
           screening.steps, "finite and at least 1");
   require_in("screening: digs on the ground itself", screening.confirmed, 1, most_evaluations);
-  const Terrain coarse = coarser(terrain, screening.cells);
-  DigSearchOptions screen = options;
-  screen.rules.step *= screening.steps;
-  Found<DigSearchResult> screened = search_dig(machine, simulator, coarse, screen);
-  if (!screened && screened.stopped) return screened;
-  if (screened) {
-    Found<DigSearchResult> found = search_dig(machine, simulator, terrain,
-                                              confirming(options, *screened, screening.confirmed));
-    if (found) {
-      found->evaluations += screened->evaluations;
-      found->stopped_by = found->stopped ? found->stopped_by : screened->stopped_by;
-      return found;
-    }
+  require_in("screening: candidates", screening.candidates, 1, most_evaluations);
+  require_own_checkpoint(machine, simulator, terrain, confirming(options, {}, screening.confirmed));
+  const Screened screened = screen(machine, simulator, terrain, options, screening);
+  const bool stopped = was_stopped(screened.result);
+  if (!screened.result && stopped) return screened.result;
+  int made = digs_of(screened.result);
+  const auto follow = [&](DigSearchOptions next) {
+    next.progress = as_part_of(options.progress, made, made + next.stop.evaluations);
+    return search_dig(machine, simulator, terrain, stopped ? only_digging(next) : next);
+  };
+  Found<DigSearchResult> found;
+  DigSearchOptions confirm = confirming(options, screened.candidates, screening.confirmed);
+  if (!confirm.start.empty()) found = follow(std::move(confirm));
+  if (!found && !was_stopped(found) && !stopped) {
+    const Found<DigSearchResult> polished = std::exchange(found, {});
+    made += digs_of(polished);
+    found = follow(without_checkpoint(options));
+    precede(polished, found);
   }
-  return search_dig(machine, simulator, terrain, options);
+  precede(screened.result, found);
+  if (found && stopped) {
+    found->stopped = true;
+    found->stopped_by = StopReason::cancelled;
+  }
+  return found;
 }
 
 }  // namespace excavplan

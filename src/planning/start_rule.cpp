@@ -19,11 +19,11 @@ constexpr double start_within = 0.002;  // [m]; ours
 constexpr double joint_clearance = 0.035;
 constexpr double coarse_step = 0.2;  // tip travel between poses while starts are compared [m]
 
-/// Positive work of the joints against the weight of the links while they dig [J].
-double link_work(const Machine& machine, const DigPath& path) {
+/// Positive work of the joints against the weight of the links while they dig, or more than `most`
+/// once it is [J].
+double link_work(const Machine& machine, const DigPath& path, double most) {
   double work = 0.0;
-  for (std::size_t i = 1; i < path.poses.size(); ++i) {
-    if (path.poses[i].phase == DigPhase::lift) break;
+  for (std::size_t i = 1; i < path.poses.size() && work <= most; ++i) {
     const JointAngles& from = path.poses[i - 1].joints;
     const JointAngles& to = path.poses[i].joints;
     const JointAngles torque =
@@ -36,8 +36,7 @@ double link_work(const Machine& machine, const DigPath& path) {
 /// True if the joints keep off their limits while they dig.
 bool keeps_off_limits(const Machine& machine, const DigPath& path) {
   return std::all_of(path.poses.begin(), path.poses.end(), [&](const DigPose& pose) {
-    return pose.phase == DigPhase::lift ||
-           limit_margin(machine, pose.joints).margin >= joint_clearance;
+    return limit_margin(machine, pose.joints).margin >= joint_clearance;
   });
 }
 
@@ -48,12 +47,15 @@ std::optional<double> least_work_start(const DigLayout& layout, const DigParamet
   const Machine& machine = layout.machine();
   std::optional<double> best;
   double least = std::numeric_limits<double>::infinity();
+  const DigTrials trials(machine, parameters, layout.ground(), options);
+  double work = 0.0;
+  const auto judge = [&](const DigPath& path) {
+    if (!keeps_off_limits(machine, path)) return false;
+    work = link_work(machine, path, least);
+    return work < least;
+  };
   const auto compare = [&](double x) {
-    const auto path = layout.path_from(parameters, x, options);
-    const auto* drivable = std::get_if<DigPath>(&path);
-    if (!drivable || !keeps_off_limits(machine, *drivable)) return;
-    const double work = link_work(machine, *drivable);
-    if (!(work < least)) return;
+    if (!layout.can_be_driven(trials, x, judge)) return;
     least = work;
     best = x;
   };

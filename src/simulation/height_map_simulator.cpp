@@ -209,7 +209,9 @@ class Dig {
   /// already higher, to the level at which the rest has room, `room(level)`.
   template <typename Room>
   void spill(double level, const Room& room) {
-    if (!(fill_ > room(level) + spill_error)) return;
+    double held = room(level);
+    if (!(fill_ > held + spill_error)) return;
+    double held_at = level;
     double low = -std::numeric_limits<double>::infinity();
     double high = -low;
     level = std::max(level, top_of_pile_);
@@ -220,7 +222,8 @@ class Dig {
       const double last_top = std::exchange(top, level);
       if (pile_.look(top)) low = -std::numeric_limits<double>::infinity();
       pile = pile_.volume(top);
-      const double left = fill_ - room(top) - pile;
+      if (top != held_at) held = room(held_at = top);
+      const double left = fill_ - held - pile;
       if (std::abs(left) < spill_error) break;
       (left > 0.0 ? low : high) = top;
       if (i > 0) gain_ = (last_left - left) / (top - last_top);

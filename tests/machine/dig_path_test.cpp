@@ -10,6 +10,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
+#include <excavplan/machine/dig_trials.hpp>
 #include "base/random.hpp"
 
 #include "base/angles.hpp"
@@ -743,6 +744,58 @@ TEST(DigPathAnywhere, LongDragsNeedThePublishedSteepness) {
     EXPECT_FALSE(drivable(angle - 1.0)) << drag_length;
     EXPECT_TRUE(drivable(angle + 1.0)) << drag_length;
   }
+}
+
+// ---- Trials -------------------------------------------------------------------------------------
+
+/// Ground that bends, and ends.
+double bent(double x) { return x > 8.5 ? nan : 0.2 * std::sin(x); }
+
+TEST(DigTrials, LayOutWhatMakeDigPathDoesFromEveryStart) {
+  int drivable = 0;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    Random random(5, i);
+    const DigParameters dig = {random.uniform(0.1, 1.5), random.uniform(0.0, 1.2),
+                               random.uniform() < 0.2 ? 0.0 : random.uniform(0.0, 3.0)};
+    DigPathOptions options;
+    options.step = random.uniform() < 0.5 ? 0.2 : 0.03;
+    options.penetration_clearance = random.uniform(0.0, 0.1);
+    options.drag_grade = random.uniform(-0.3, 0.3);
+    options.drag_keeps_angle = random.uniform() < 0.3;
+    if (random.uniform() < 0.3) options.floor = [](double) { return -0.4; };
+    const GroundProfile ground = bent;
+    const DigTrials trials(zx120(), dig, ground, options);
+    for (double x = 2.0; x < 9.5; x += 0.25) {
+      const auto tried = trials.from(x, [](const DigPath&) { return true; });
+      const Outcome made = make_dig_path(zx120(), dig, x, ground, options);
+      const auto* path = std::get_if<DigPath>(&made);
+      ASSERT_EQ(tried.has_value(), path != nullptr) << i << " at " << x;
+      if (!path) continue;
+      ++drivable;
+      ASSERT_EQ(tried->poses.size(), path->poses.size());
+      for (std::size_t k = 0; k < path->poses.size(); ++k) {
+        ASSERT_EQ(tried->poses[k].joints, path->poses[k].joints);
+        ASSERT_EQ(tried->poses[k].bucket.z, path->poses[k].bucket.z);
+      }
+      EXPECT_EQ(tried->limit_margin.margin, path->limit_margin.margin);
+      EXPECT_EQ(tried->heel_clearance, path->heel_clearance);
+    }
+  }
+  EXPECT_GT(drivable, 300);
+}
+
+TEST(DigTrials, AreJudgedBeforeTheLift) {
+  const DigParameters dig = {0.7, 0.3, 1.5};
+  const GroundProfile ground = flat;
+  const DigPathOptions options;
+  const DigTrials trials(zx120(), dig, ground, options);
+  const double x = driven(make_dig_path_anywhere(zx120(), dig, flat)).start_x;
+  const auto judge = [](const DigPath& path) { return path.poses.back().phase != DigPhase::scoop; };
+  EXPECT_FALSE(trials.from(x, judge));
+  EXPECT_TRUE(trials.from(x, [&](const DigPath& path) { return !judge(path); }));
+  DigPathOptions wrong;
+  wrong.step = 0.0;
+  EXPECT_THROW(DigTrials(zx120(), dig, ground, wrong), Error);
 }
 
 }  // namespace

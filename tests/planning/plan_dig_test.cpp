@@ -370,6 +370,87 @@ TEST_F(PlanDig, ASearchFreesTheStartAfterAThirdOfItsDigs) {
   EXPECT_LT(of_least_work(200, 300), 50);
 }
 
+// docs/methods.md#planning: 280 digs on coarse cells and 90 on the ground itself.
+TEST_F(PlanDig, OnEvenGroundASearchIsScreened) {
+  const Terrain ground = rising(0.1);
+  const DigPlan found = plan_dig(machine_, loam_, 40.0, ground, searched(0, 1));
+  ASSERT_TRUE(found.dig);
+  EXPECT_GT(found.evaluations, 280);
+  EXPECT_LE(found.evaluations, 280 + 90);
+  EXPECT_EQ(found.search->ranks.size(), static_cast<std::size_t>(found.evaluations));
+  const auto again = evaluate_dig(machine_, *default_simulator().make(machine_, loam_, 40.0),
+                                  ground, found.dig->parameters, found.dig->start_x);
+  EXPECT_EQ(std::get<PlannedDig>(again).payload_mass, found.dig->payload_mass);
+  EXPECT_EQ(std::get<PlannedDig>(again).energy, found.dig->energy);
+  const DigPlan thorough = plan_dig(machine_, loam_, 40.0, ground, searched(1500, 1));
+  EXPECT_GT(found.search->worth, 0.99 * thorough.search->worth);
+  EXPECT_EQ(bytes(plan_dig(machine_, loam_, 40.0, ground, searched(0, 3))), bytes(found));
+}
+
+// The same: where ground bends, something stands or no dig fills the bucket, all of 600 digs.
+TEST_F(PlanDig, WhereCoarseGroundDoesNotTellTheBestDigASearchIsNotScreened) {
+  Terrain bent = rising(0.0);
+  bent.bank.z.rightCols(bent.bank.z.cols() / 2) -= 0.3;
+  const DigPlan on_bent = plan_dig(machine_, loam_, 40.0, bent, searched(0, 1));
+  EXPECT_GT(on_bent.evaluations, 400);
+  EXPECT_LE(on_bent.evaluations, 600);
+
+  Terrain standing = rising(0.0);
+  standing.obstacles =
+      Eigen::ArrayXXd::Constant(standing.bank.z.rows(), standing.bank.z.cols(), std::nan(""));
+  standing.obstacles(standing.obstacles.rows() / 2, standing.obstacles.cols() - 3) = 1.0;
+  EXPECT_GT(plan_dig(machine_, loam_, 40.0, standing, searched(0, 1)).evaluations, 400);
+
+  const DigPlan in_hard = plan_dig(machine_, loam_, 80.0, rising(0.27), searched(0, 1));
+  EXPECT_TRUE(warns(in_hard, "min_fill_relaxed"));
+  EXPECT_GT(in_hard.evaluations, 280 + 90 + 400);
+  EXPECT_EQ(in_hard.search->ranks.size(), static_cast<std::size_t>(in_hard.evaluations));
+}
+
+TEST_F(PlanDig, AScreenedSearchTellsItsProgress) {
+  for (const double density : {40.0, 80.0}) {  // the second begins again on the ground itself
+    PlanOptions options = searched(0, 1);
+    int last = 0;
+    options.search.progress = [&](const SearchProgress& now) {
+      EXPECT_GE(now.evaluations, last);
+      EXPECT_GE(now.planned, now.evaluations);
+      last = now.evaluations;
+      return true;
+    };
+    EXPECT_EQ(plan_dig(machine_, loam_, density, rising(0.27), options).evaluations, last);
+  }
+}
+
+TEST_F(PlanDig, AScreenedSearchThatIsCancelledGivesADigOfTheGroundItself) {
+  const Terrain ground = rising(0.1);
+  for (const int last : {20, 150, 300}) {
+    PlanOptions options = searched(0, 1);
+    options.search.progress = [=](const SearchProgress& now) { return now.evaluations < last; };
+    const DigPlan part = plan_dig(machine_, loam_, 40.0, ground, options);
+    ASSERT_TRUE(part.dig) << last;
+    EXPECT_TRUE(part.stopped);
+    EXPECT_EQ(part.search->stopped_by, StopReason::cancelled);
+    EXPECT_LE(part.evaluations, last + 5) << "and of each of its best digs one";
+    const auto again = evaluate_dig(machine_, *default_simulator().make(machine_, loam_, 40.0),
+                                    ground, part.dig->parameters, part.dig->start_x);
+    EXPECT_EQ(std::get<PlannedDig>(again).energy, part.dig->energy);
+  }
+}
+
+TEST_F(PlanDig, AScreenedSearchThatWasCancelledResumes) {
+  const test::TemporaryFolder folder;
+  const DigPlan at_once = plan(40.0, searched(0, 1));
+  for (const int last : {150, 330}) {
+    PlanOptions options = searched(0, 1);
+    options.search.checkpoint = folder.file(std::to_string(last) + ".json");
+    options.search.progress = [=](const SearchProgress& now) { return now.evaluations < last; };
+    EXPECT_TRUE(plan(40.0, options).stopped);
+    options.search.progress = nullptr;
+    options.search.resume = true;
+    EXPECT_EQ(bytes(plan(40.0, options)), bytes(at_once)) << last;
+  }
+}
+
 // StopRules::stall: evaluations without a better point, looked at after each round of polishes.
 TEST_F(PlanDig, ASearchThatFindsNothingBetterEndsAndDoesNotBeginAgain) {
   PlanOptions options = searched(600);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <variant>
 
 #include <Eigen/Core>
@@ -29,6 +30,9 @@ struct LinkPositions {
   double phi1 = 0.0;           ///< direction of the boom [rad]
   double phi2 = 0.0;           ///< of the arm [rad]
   double phi3 = 0.0;           ///< of the bucket [rad]
+  /// Unit vectors of these directions.
+  std::array<Eigen::Vector2d, 3> along = {Eigen::Vector2d::UnitX(), Eigen::Vector2d::UnitX(),
+                                          Eigen::Vector2d::UnitX()};
 };
 
 /// Pins and tip for these joint angles.

@@ -57,8 +57,9 @@ struct DigSearchOptions : SearchSettings {
 /// of evaluations allows.
 DigSearchOptions budget_search();
 
-/// Digs of one search; what they reach: docs/methods.md#planning. 600; for each soil that uncertain
-/// ground may be, and for all together, 100 from a known good dig on and 200 from nothing. Ours.
+/// Digs of one search that is not screened; what they reach: docs/methods.md#planning. 600; for
+/// each soil that uncertain ground may be, and for all together, 100 from a known good dig on and
+/// 200 from nothing. Ours.
 int evaluation_budget(bool uncertain, bool from_known);
 
 }  // namespace excavplan
