@@ -24,7 +24,7 @@ constexpr double same_place = 1.0;         // [m]
 constexpr double farthest = 5.0;           // from the design along, from what is hidden across [m]
 constexpr std::size_t most_cells = 200;    // that are looked for from each place
 constexpr double least_revealed = 0.0005;  // of the design, to be worth a scan
-constexpr double way_price = 0.001;        // of the design, for a metre of the way [1/m]
+constexpr double way_price = 0.0001;       // of the design, for a metre of the way [1/m]
 constexpr double slack = 0.01;  // by which a ray may be within the ground that it passes [m]
 constexpr double outermost =
     0.02;  // share of a cloud's points beside the sector that is counted on
