@@ -144,7 +144,7 @@ std::vector<Tick> x_ticks_of(const Panel& panel, const Rectangle& view, double w
   if (panel.x_ticks()) return *panel.x_ticks();
   double wanted = std::min(8.0, width / (3.0 * size));
   for (; wanted > 1.0; wanted -= 0.5) {
-    const std::vector<Tick> ticks = nice_x_ticks(panel, view, wanted);
+    std::vector<Tick> ticks = nice_x_ticks(panel, view, wanted);
     const double room = width / std::max(1.0, static_cast<double>(ticks.size()));
     if (widest(ticks, size) + 0.8 * size < room) return ticks;
   }
@@ -364,10 +364,10 @@ class Sheet {
       collect_keys();
     }
     if (!fits() && !keys_.empty()) {
-      drawing_.left_out.push_back("the legend");
+      drawing_.left_out.emplace_back("the legend");
       keys_.clear();
     }
-    if (!fits()) drawing_.left_out.push_back("axes of a readable height");
+    if (!fits()) drawing_.left_out.emplace_back("axes of a readable height");
   }
 
   void collect_keys() {
@@ -574,9 +574,8 @@ class Sheet {
   // ---- Drawing ----
 
   void add(DrawnItem item) { drawing_.items.push_back(std::move(item)); }
-  void put(double x, double y, const std::string& content, double size, Anchor anchor,
-           bool bold = false, bool upright = false) {
-    if (!content.empty()) add(DrawnText{{x, y}, content, size, anchor, upright, bold});
+  void put(DrawnText text) {
+    if (!text.text.empty()) add(std::move(text));
   }
   Style thin(const std::string& colour) const { return {colour, 0.5 * scale_}; }
   Style scaled(Style style) const {
@@ -630,8 +629,12 @@ class Sheet {
     if (panel.states_exaggeration()) title += ", " + exaggeration_text(frame);
     if (!title.empty()) {
       const double baseline = box.top - 3.5 * scale_ - (names_are_above() ? line() : 0.0);
-      put(box.left, std::max(baseline, top + 0.8 * text()),
-          fitted(title, cell_right - box.left, text(), true), text(), Anchor::start, true);
+      put({{box.left, std::max(baseline, top + 0.8 * text())},
+           fitted(title, cell_right - box.left, text(), true),
+           text(),
+           Anchor::start,
+           false,
+           true});
     }
   }
 
@@ -672,14 +675,17 @@ class Sheet {
             {{{x, box.bottom()}, {x, box.bottom() + 2.5 * scale_}}}, false, thin("#444444")});
       }
       const double most = room * static_cast<double>(every) - gap_of_words;
-      put(x, box.bottom() + line(), fitted(tick.second, most, number()), number(), Anchor::middle);
+      put({{x, box.bottom() + line()},
+           fitted(tick.second, most, number()),
+           number(),
+           Anchor::middle});
     }
     const double cell = box.width + frame.margin + right();
     const std::string name = fitted(panel.x_label(), cell, text());
     const double half = 0.5 * text_width(name, text());
     const double middle = std::clamp(box.left + 0.5 * box.width, pad() + half,
                                      std::max(pad() + half, width_ - pad() - half));
-    put(middle, box.bottom() + 2.0 * line(), name, text(), Anchor::middle);
+    put({{middle, box.bottom() + 2.0 * line()}, name, text(), Anchor::middle});
   }
 
   void draw_y(const Panel& panel, const Frame& frame, const std::vector<Tick>& ticks, bool above) {
@@ -695,21 +701,28 @@ class Sheet {
           std::clamp(y + 0.36 * number(), box.top + 0.5 * number(), box.bottom() + 0.4 * number()) -
           0.5 * pitch() * static_cast<double>(lines.size() - 1);
       for (const std::string& each : lines) {
-        put(box.left - 4.0 * scale_, baseline, fitted(each, frame.margin - 4.0 * scale_, number()),
-            number(), Anchor::end);
+        put({{box.left - 4.0 * scale_, baseline},
+             fitted(each, frame.margin - 4.0 * scale_, number()),
+             number(),
+             Anchor::end});
         baseline += pitch();
       }
     }
     if (above) {
       const double room = box.width + right() + 0.5 * frame.margin;
-      put(box.left - 0.5 * frame.margin, box.top - 3.5 * scale_,
-          fitted(panel.y_label(), room, text()), text(), Anchor::start);
+      put({{box.left - 0.5 * frame.margin, box.top - 3.5 * scale_},
+           fitted(panel.y_label(), room, text()),
+           text(),
+           Anchor::start});
       return;
     }
     const double half = 0.5 * text_width(panel.y_label(), text());
     const double middle = std::max(box.top + 0.5 * box.height, half + pad());
-    put(box.left - frame.margin + 0.75 * line(), middle, panel.y_label(), text(), Anchor::middle,
-        false, true);
+    put({{box.left - frame.margin + 0.75 * line(), middle},
+         panel.y_label(),
+         text(),
+         Anchor::middle,
+         true});
   }
 
   void draw_shape(const Panel::Shape& shape, const Frame& frame) {
@@ -719,7 +732,6 @@ class Sheet {
         return draw_map(shape, frame);
       case Panel::Kind::label:
       case Panel::Kind::remark:
-        return;
       case Panel::Kind::dots:
         return;
       case Panel::Kind::span:
@@ -933,9 +945,10 @@ class Sheet {
       double x = std::max(pad(), 0.5 * (width_ - width));
       for (const Panel::Shape* key : keys.keys) {
         draw_key(*key, x, y + 0.5 * line());
-        put(x + 18.0 * scale_, y + 0.5 * line() + 0.36 * number(),
-            fitted(key->text, width_ - pad() - x - 18.0 * scale_, number()), number(),
-            Anchor::start);
+        put({{x + 18.0 * scale_, y + 0.5 * line() + 0.36 * number()},
+             fitted(key->text, width_ - pad() - x - 18.0 * scale_, number()),
+             number(),
+             Anchor::start});
         x += key_width(*key);
       }
       y += line();
@@ -974,8 +987,10 @@ class Sheet {
       draw_bands(bar, box);
     }
     draw_box(box, thin("#444444"));
-    put(0.5 * width_, box.bottom() + 2.0 * line(), fitted(bar.label, inner(), text()), text(),
-        Anchor::middle);
+    put({{0.5 * width_, box.bottom() + 2.0 * line()},
+         fitted(bar.label, inner(), text()),
+         text(),
+         Anchor::middle});
     return y + 3.0 * line();
   }
 
@@ -990,7 +1005,7 @@ class Sheet {
     const double high = bar.scale.high / bar.unit;
     for (const Tick& tick : nice_ticks(low, high, 6.0)) {
       const double x = box.left + box.width * (tick.first - low) / (high - low);
-      put(x, box.bottom() + line() - 1.0 * scale_, tick.second, number(), Anchor::middle);
+      put({{x, box.bottom() + line() - 1.0 * scale_}, tick.second, number(), Anchor::middle});
     }
   }
 
@@ -1012,7 +1027,7 @@ class Sheet {
                      {{left, box.top, step, box.height}}});
       if (band == 0 || std::abs(band) % every != 0) continue;
       const double x = band > 0 ? left : left + step;
-      put(x, box.bottom() + line() - 1.0 * scale_, number_of(band), number(), Anchor::middle);
+      put({{x, box.bottom() + line() - 1.0 * scale_}, number_of(band), number(), Anchor::middle});
     }
   }
 
@@ -1020,15 +1035,19 @@ class Sheet {
     if (!lines.empty()) y += before;
     for (const std::string& each : lines) {
       y += line();
-      put(pad(), y - 0.3 * line(), each, number(), Anchor::start);
+      put({{pad(), y - 0.3 * line()}, each, number(), Anchor::start});
     }
     return y;
   }
 
   double draw_table(double y) {
     y += line();
-    put(pad(), y - 0.3 * line(), fitted(figure_.title, inner(), text(), true), text(),
-        Anchor::start, true);
+    put({{pad(), y - 0.3 * line()},
+         fitted(figure_.title, inner(), text(), true),
+         text(),
+         Anchor::start,
+         false,
+         true});
     return draw_lines(table_lines(), y, 0.0);
   }
 

@@ -116,10 +116,9 @@ std::optional<Vector2d> meeting(const Vector2d& a, double from_a, const Vector2d
 }
 
 /// Rod, rocker and link of a four-bar; the rod's end is where rocker and link meet too.
+/// @param length  of the rod, from its `foot` @param rocker, link  their pins
 std::vector<Points> four_bar(const FourBar& bars, const Vector2d& foot, double length,
-                             const Vector2d& joint, double before, double after) {
-  const Vector2d rocker = pin_at(joint, before, bars.rocker.pin);
-  const Vector2d link = pin_at(joint, after, bars.link.pin);
+                             const Vector2d& rocker, const Vector2d& link) {
   std::optional<Vector2d> best;
   double least = 0.0;
   for (const double side : {-1.0, 1.0}) {
@@ -148,10 +147,11 @@ std::vector<Points> cylinder_lines(const Machine& machine, const LinkPositions& 
       continue;
     }
     const double length = cylinder.at(joints[static_cast<int>(i)]).length;
-    for (Points& line : four_bar(std::get<FourBar>(cylinder.geometry().rod), foot, length, joint[i],
-                                 directions[i], directions[i + 1])) {
+    const auto& bars = std::get<FourBar>(cylinder.geometry().rod);
+    const Vector2d rocker = pin_at(joint[i], directions[i], bars.rocker.pin);
+    const Vector2d link = pin_at(joint[i], directions[i + 1], bars.link.pin);
+    for (Points& line : four_bar(bars, foot, length, rocker, link))
       lines.push_back(std::move(line));
-    }
   }
   return lines;
 }

@@ -51,9 +51,9 @@ bool KnownStrip::is_known(double x_min, double x_max) const {
          unknown_before_[static_cast<std::size_t>(last)];
 }
 
-DigLayout::DigLayout(const Machine& machine, const Terrain& terrain, const DigPathOptions& rules)
+DigLayout::DigLayout(const Machine& machine, const Terrain& terrain, DigPathOptions rules)
     : machine_(required(machine)),
-      rules_(rules),
+      rules_(std::move(rules)),
       ground_(boom_plane_profile(terrain)),
       strip_(terrain, machine),
       room_(terrain, machine) {}

@@ -31,7 +31,7 @@ class KnownStrip {
 class DigLayout {
  public:
   /// @throws Error (bad_input) as require_machine() and require_terrain()
-  DigLayout(const Machine& machine, const Terrain& terrain, const DigPathOptions& rules = {});
+  DigLayout(const Machine& machine, const Terrain& terrain, DigPathOptions rules = {});
 
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters,
                                               double start_x) const;
