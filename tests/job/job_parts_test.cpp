@@ -1093,7 +1093,7 @@ TEST(JobOrder, ARasterComesBackCellByCell) {
   save_order(folder.file("job"), job.settings,
              {std::string(EXCAVPLAN_DATA_SOURCE) + "/machines/zx120.json", ""});
   const DesignSurface kept = load_order(folder.file("job")).surface;
-  const HeightMap& map = std::get<HeightMap>(kept.shape);
+  const auto& map = std::get<HeightMap>(kept.shape);
   EXPECT_TRUE(std::isnan(map.z(0, 0)));
   EXPECT_EQ(map.z(3, 4), -0.5);
   EXPECT_EQ(map.origin, raster.origin);

@@ -216,7 +216,7 @@ TEST(DigPath, EveryPhaseKeepsItsRuleAndEveryPoseItsLimits) {
     const auto outcome =
         make_dig_path(machine, random_parameters(random), random.uniform(3.0, 8.0), flat);
     if (!std::holds_alternative<DigPath>(outcome)) continue;
-    const DigPath& path = std::get<DigPath>(outcome);
+    const auto& path = std::get<DigPath>(outcome);
     ++count;
     expect_rules_of_the_paper(path);
     double margin = infinity;
@@ -526,7 +526,7 @@ TEST(WayDown, LowersTheBucketInItsAttitudeFromWhereItIsClear) {
     const auto ground = [slope](double x) { return slope * (x - 6.0); };
     const auto outcome = make_dig_path_anywhere(zx120(), random_parameters(random), ground);
     if (std::holds_alternative<Infeasible>(outcome)) continue;
-    const DigPath& path = std::get<DigPath>(outcome);
+    const auto& path = std::get<DigPath>(outcome);
     const auto down = way_down(zx120(), path, ground);
     ASSERT_TRUE(std::holds_alternative<std::vector<DigPose>>(down));
     std::vector<DigPose> poses = std::get<std::vector<DigPose>>(down);
@@ -554,7 +554,7 @@ TEST(WayDown, SaysWhatBlocksIt) {
   low.limits[0].lower = path.poses.front().joints[0] - 0.01;
   const auto outcome = way_down(low, path, flat);
   ASSERT_TRUE(std::holds_alternative<Infeasible>(outcome));
-  const Infeasible& blocked = std::get<Infeasible>(outcome);
+  const auto& blocked = std::get<Infeasible>(outcome);
   EXPECT_EQ(blocked.reason, Reason::lift_blocked);
   EXPECT_EQ(blocked.phase, DigPhase::approach);
   EXPECT_EQ(blocked.message.rfind("approach, after 0.0", 0), 0u) << blocked.message;

@@ -614,7 +614,7 @@ TEST_F(PlanDig, OnUnevenGroundAnUncertainDensityIsSearchedAsThoroughlyAsAKnownOn
   }
   PlanOptions options;
   options.method = PlanMethod::search;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     options.search.seed = seed;
     const DigPlan known = plan_dig(machine_, loam_, {40.0}, ground, options);
     const DigPlan uncertain = plan_dig(machine_, loam_, {40.0, 2.0}, ground, options);

@@ -432,7 +432,7 @@ TEST(HeightChangeFigure, BandIsThatOfTheNoise) {
   const auto width = [&] {
     const std::string svg = change_svg(survey.sheet);
     const auto end = svg.find("Z\" fill=\"#d55e00\"");
-    const auto start = svg.rfind("M", end);
+    const auto start = svg.rfind('M', end);
     const std::string path = svg.substr(start + 1, end - start - 1);
     const auto y = [&](std::size_t at) { return std::stod(path.substr(path.find(' ', at) + 1)); };
     return y(path.rfind('L')) - y(0);  // from the first point below to the first one above
