@@ -848,7 +848,7 @@ TEST_F(Tools, ReportOfAnEstimateShowsTheGroundWithItsZones) {
   const std::string file = folder.file("report.html");
   const json result = answer("estimate-density", quickstart(folder) + Words{"--report", file});
   const std::string page = content_of(file);
-  EXPECT_TRUE(contains(page, "<figure class=\"plot fallback\"><div class=\"spacious\"><svg"));
+  EXPECT_TRUE(contains(page, "<figure class=\"plot\"><div class=\"spacious\"><svg"));
   EXPECT_TRUE(contains(page, "<div class=\"narrow\"><svg"));
   const json scene = drawn_on(page);
   ASSERT_EQ(scene["zones"].size(), result["zones"].size());
