@@ -100,8 +100,8 @@ std::vector<double> lanes_of(const JobStation& station, double bucket_width, boo
   if (!station.passes.empty()) return station.passes;
   std::vector<double> all;
   for (const double lane : station.lanes) {
-    const bool is_within = !all.empty() && lane - all.back() < 0.5 * bucket_width;
-    if (!all.empty() && !is_within) all.push_back(0.5 * (all.back() + lane));
+    const bool leaves_ridge = !all.empty() && lane - all.back() >= 0.5 * bucket_width;
+    if (leaves_ridge) all.push_back(0.5 * (all.back() + lane));
     all.push_back(lane);
   }
   if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});

@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "base/plan_geometry.hpp"
 #include "drawing/render.hpp"
 #include "figures/change_figure.hpp"
 #include "figures/dig_figures.hpp"
@@ -564,19 +565,6 @@ double area_of(const Points& polygon) {
     sum += 0.5 * (p.x() * q.y() - q.x() * p.y());
   }
   return std::abs(sum);
-}
-
-/// Whether a ray to the right of a point leaves a polygon an odd number of times.
-bool is_inside(const Points& polygon, const Eigen::Vector2d& at) {
-  bool inside = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d& p = polygon[i];
-    const Eigen::Vector2d& q = polygon[(i + 1) % polygon.size()];
-    if ((p.y() > at.y()) == (q.y() > at.y())) continue;
-    const double x = p.x() + (at.y() - p.y()) / (q.y() - p.y()) * (q.x() - p.x());
-    if (x > at.x()) inside = !inside;
-  }
-  return inside;
 }
 
 TEST_F(SectionFigure, TheCylinderOfTheBucketEndsOnTheArm) {
