@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include <excavplan/planning/screened_search.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
@@ -31,6 +32,8 @@ constexpr double spill_price = 2.0;      // of soil spilled beside design and du
 constexpr double most_touched = 0.0005;  // by a dig, of what no soil may touch [m^3]
 constexpr std::size_t most_lanes = 7;    // that are searched at once
 constexpr std::size_t most_confirmed = 8;  // digs whose ground is looked at
+constexpr std::size_t most_ranked = 24;    // on the ground itself; of more, the best on coarser
+constexpr int coarse_cells = 2;            // of the ground along x and y in one of that
 constexpr double level_from = 0.2;  // before the start of a dig, the ground whose level counts [m]
 constexpr double level_to = 1.2;    // likewise [m]
 const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
@@ -97,6 +100,18 @@ struct Candidate {
   DigPath path;
   double worth = 0.0;  ///< by the soil that it lifts
 };
+
+/// The path in steps twice as long.
+DigPath every_second(const DigPath& path) {
+  DigPath coarse = path;
+  coarse.poses.clear();
+  const std::size_t count = path.poses.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool ends_phase = i + 1 == count || path.poses[i + 1].phase != path.poses[i].phase;
+    if (i % 2 == 0 || ends_phase) coarse.poses.push_back(path.poses[i]);
+  }
+  return coarse;
+}
 
 /// A lane, and what all digs in it ask of its view.
 struct Lane {
@@ -226,12 +241,7 @@ class StepSearch {
   }
 
   std::optional<StepDig> best(Aim aim) {
-    parallel_for(candidates_.size(), 0, [&](std::size_t i) { weigh(candidates_[i]); });
-    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
-                                     [](const Candidate& each) { return !(each.worth > 0.0); }),
-                      candidates_.end());
-    std::stable_sort(candidates_.begin(), candidates_.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+    rank();
     std::optional<StepDig> best;
     std::size_t lane = 0;  // of the best
     std::size_t confirmed = 0;
@@ -274,8 +284,10 @@ class StepSearch {
     const double cell = task_.ground.bank.cell_size;
     const auto on_line = [&](double value) { return cell * std::floor(value / cell); };
     const double half = on_line(0.5 * machine_.bucket.width_outside + room_beside);
-    return {on_line(std::max(line.near - room_beyond, machine_.track_front)), -half,
-            on_line(line.far + room_beyond), half};
+    // A bite ends so far before the work, and then the bucket curls.
+    const double first = line.near - bite_drags.back() - 2.0 * machine_.bucket_length;
+    return {on_line(std::max(first, machine_.track_front)), -half, on_line(line.far + room_beyond),
+            half};
   }
 
   void add_approach(std::size_t lane, DigPath& path) const {
@@ -522,11 +534,34 @@ class StepSearch {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
   }
 
-  void weigh(Candidate& candidate) const {
-    const Terrain& ground = lanes_[candidate.lane].view.ground().terrain();
-    const auto dig = dig_of_path(machine_, simulator_, ground, candidate.path, cycle_of(candidate));
-    if (const auto* planned = std::get_if<PlannedDig>(&dig))
-      candidate.worth = planned->payload_mass / cost(*planned);
+  /// Leaves those that are worth something, the best first; of many the best on coarser ground and
+  /// in coarser steps, where a dig costs a quarter.
+  void rank() {
+    const bool is_coarse = candidates_.size() > most_ranked;
+    std::vector<std::optional<Terrain>> coarse(lanes_.size());
+    for (const Candidate& each : candidates_) {
+      if (is_coarse && !coarse[each.lane])
+        coarse[each.lane] = coarser(lanes_[each.lane].view.ground().terrain(), coarse_cells);
+    }
+    parallel_for(candidates_.size(), 0, [&](std::size_t i) {
+      Candidate& each = candidates_[i];
+      each.worth = is_coarse ? worth_of(each, *coarse[each.lane], every_second(each.path))
+                             : worth_of(each, lanes_[each.lane].view.ground().terrain(), each.path);
+    });
+    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
+                                     [](const Candidate& each) { return !(each.worth > 0.0); }),
+                      candidates_.end());
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+    if (candidates_.size() > most_ranked)
+      candidates_.erase(candidates_.begin() + most_ranked, candidates_.end());
+  }
+
+  /// By the soil that it lifts; 0 if it stalls.
+  double worth_of(const Candidate& candidate, const Terrain& ground, const DigPath& path) const {
+    const auto dig = dig_of_path(machine_, simulator_, ground, path, cycle_of(candidate));
+    const auto* planned = std::get_if<PlannedDig>(&dig);
+    return planned == nullptr ? 0.0 : planned->payload_mass / cost(*planned);
   }
 
   std::optional<StepDig> confirm(const Candidate& candidate, Aim aim) const {

@@ -21,25 +21,30 @@ namespace {
 using Eigen::Index;
 
 constexpr int most_together = 8;  // ours
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Means of a layer over the cells that are known, each as heavy as `weight` says.
+/// Means of a layer over the cells that are known, each as heavy as `weight` says. Rounding puts
+/// none beside what it is the mean of.
 template <typename Weight>
 Eigen::ArrayXXd means(const Eigen::ArrayXXd& layer, int cells, const Weight& weight) {
   const auto blocks = [&](Index count) { return (count + cells - 1) / cells; };
   Eigen::ArrayXXd coarse(blocks(layer.rows()), blocks(layer.cols()));
   for (Index col = 0; col < coarse.cols(); ++col) {
     for (Index row = 0; row < coarse.rows(); ++row) {
-      double sum = 0.0;
-      double weights = 0.0;
+      double sum = 0.0, weights = 0.0;
+      double least = infinity, most = -infinity;
       for (Index c = col * cells; c < std::min(layer.cols(), (col + 1) * cells); ++c) {
         for (Index r = row * cells; r < std::min(layer.rows(), (row + 1) * cells); ++r) {
           const double heavy = weight(r, c);
           if (!(heavy > 0.0)) continue;
           sum += heavy * layer(r, c);
           weights += heavy;
+          least = std::min(least, layer(r, c));
+          most = std::max(most, layer(r, c));
         }
       }
-      coarse(row, col) = weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
+      coarse(row, col) = weights > 0.0 ? std::clamp(sum / weights, least, most)
+                                       : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return coarse;

@@ -653,6 +653,22 @@ TEST(LearntNumber, ABoundMovesItByTheMomentsOfItsPosterior) {
   }
 }
 
+TEST(StepSearch, TheBucketCurlsWithinItsViewWhereTheWorkIsFarAhead) {
+  const HandMadeJob job;
+  const JobMap map = job.map();
+  for (const double near : {4.0, 4.35, 4.7}) {
+    StepTask task{job.settings,
+                  map,
+                  job.ground,
+                  {1.5, 0.0, 0.0, 0.0},
+                  {{3.0, 3.5, 3.0}, 1.57, 2.0, false},
+                  {}};
+    task.lines = {{0.0, 0.1, near, 6.0}};
+    task.strength_factor = task.hard_factor = 4.0;  // where it bites, up to the end of the work
+    EXPECT_TRUE(best_dig(task).has_value()) << near;
+  }
+}
+
 TEST(LearntNumber, ManyStallsDoNotFreezeIt) {
   LearntNumber number = {0.0, 0.4};
   for (int i = 0; i < 6; ++i) number.learn_bound(number.mean + number.sd(), true, 0.06);

@@ -70,5 +70,18 @@ TEST(CoarserGround, HoldsAsMuchSoil) {
   EXPECT_THROW(coarser(ground, 0), Error);
 }
 
+// The mean of equal values of different weight may round to a value above all of them, which the
+// simulator would refuse as looser than the loosest.
+TEST(CoarserGround, KeepsAStateThatIsTheSameEverywhere) {
+  Terrain ground = undisturbed(flat_ground({0.0, 0.0, 0.4, 0.4}, 0.1));
+  for (const double state : {1.283, 0.7, 1.1}) {
+    ground.loose_void_ratio.setConstant(4, 4, state);
+    for (int i = 1; i <= 50; ++i) {
+      ground.loose = Eigen::ArrayXXd::Random(4, 4).abs();
+      EXPECT_TRUE((coarser(ground, 2).loose_void_ratio == state).all());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace excavplan
