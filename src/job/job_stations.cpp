@@ -158,6 +158,7 @@ void add_between(const JobFrame& frame, const Machine& machine, std::vector<JobS
   for (const auto& group : groups) {
     stations.push_back(station_at(frame, last.along, group));
     stations.back().is_again = true;
+    stations.back().has_others_beside = true;
     stations.back().shapes_from = last.shapes_from;
   }
 }
@@ -213,6 +214,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
       stations.push_back(station_at(frame, along, lanes));
       stations.back().is_wide = is_wide;
+      stations.back().has_others_beside = groups.size() > 1;
       if (!is_wide && groups.size() > 1 && i < more)
         stations.back().shapes_from = along + step + farthest_of(machine) - overlap;
     }

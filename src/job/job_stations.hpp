@@ -26,6 +26,7 @@ struct JobStation {
   double turned = 0.0;              ///< from the line of work [rad]
   std::vector<double> passes = {};  ///< lanes of its finishing passes; empty: as `lanes` [m]
   bool is_wide = false;             ///< of a design that is wider than one place's lanes
+  bool has_others_beside = false;   ///< whose lanes take up what leaves its own
   bool is_beyond = false;           ///< the far end: all of it is along the reversed() line
   bool is_again = false;            ///< only if the shape of what it reaches is not right
   double shapes_from = -1e9;        ///< along the line; what is nearer, later places shape [m]

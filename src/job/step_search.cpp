@@ -50,10 +50,11 @@ constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
 constexpr double same_turn = 0.03;     // likewise [rad]
 constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
-constexpr double least_in_hard = 0.07;   // likewise in soil that lets no bucket fill
-constexpr double least_on_bench = 0.3;   // likewise where more is below that can come with it
-constexpr double least_at_wall = 0.06;   // likewise, counting what lies there twice
-constexpr double least_lifted = 0.012;   // by a finishing pass [m^3]
+constexpr double least_in_hard = 0.07;    // likewise in soil that lets no bucket fill
+constexpr double least_on_bench = 0.3;    // likewise where more is below that can come with it
+constexpr double most_from_beside = 1.5;  // of soil that a dig lifts, over what lies in its lane
+constexpr double least_at_wall = 0.06;    // likewise, counting what lies there twice
+constexpr double least_lifted = 0.012;    // by a finishing pass [m^3]
 constexpr double standing = 0.05;        // of a bank in a lane over the mean ground of the lane [m]
 constexpr double least_finished = 0.06;  // that a pass brings within the tolerance [m^2]
 constexpr double least_cleared = 0.015;  // or clears, for later ones [m^3]
@@ -305,6 +306,7 @@ class StepSearch {
   void lay_out(std::size_t lane) {
     if (task_.finishing) return lay_out_passes(lane);
     const WorkLine& line = lanes_[lane].line;
+    if (!may_yield(lanes_[lane], least_of_volume())) return;
     for (double start = line.far; start > line.near + start_step; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
       lay_out_layers(lane, start, attitudes, rules_in(lane));
@@ -313,10 +315,22 @@ class StepSearch {
     }
   }
 
+  double least_of_volume() const { return (task_.bench ? least_on_bench : least_gain) * capacity_; }
+
+  /// Whether so much can still come out of a lane.
+  bool may_yield(const Lane& lane, double least) const {
+    const WorkLine& line = lane.line;
+    const double mean =
+        lane.mean_over(line.near, line.far, [&](Index c) { return lane.excess(c); });
+    const double lies = mean * (line.far - line.near) * machine_.bucket.width_outside;
+    return most_from_beside * lies > least;
+  }
+
   /// Bites, and the thinnest layers.
   void lay_out_in_hard(std::size_t lane) {
     const Lane& at = lanes_[lane];
     const WorkLine& line = at.line;
+    if (!may_yield(at, least_in_hard * capacity_)) return;
     DigPathOptions rules = rules_in(lane);
     for (double start = line.far; start > line.near; start -= start_step) {
       const double ground = at.ground(start);
@@ -534,10 +548,11 @@ class StepSearch {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
   }
 
-  /// Leaves those that are worth something, the best first; of many the best on coarser ground and
-  /// in coarser steps, where a dig costs a quarter.
+  /// Leaves those that are worth something, the best first; of many digs for volume the best on
+  /// coarser ground and in coarser steps, where a dig costs a quarter. What a pass does to the
+  /// shape of the ground is finer than that.
   void rank() {
-    const bool is_coarse = candidates_.size() > most_ranked;
+    const bool is_coarse = !task_.finishing && candidates_.size() > most_ranked;
     std::vector<std::optional<Terrain>> coarse(lanes_.size());
     for (const Candidate& each : candidates_) {
       if (is_coarse && !coarse[each.lane])
@@ -553,7 +568,7 @@ class StepSearch {
                       candidates_.end());
     std::stable_sort(candidates_.begin(), candidates_.end(),
                      [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
-    if (candidates_.size() > most_ranked)
+    if (is_coarse && candidates_.size() > most_ranked)
       candidates_.erase(candidates_.begin() + most_ranked, candidates_.end());
   }
 
@@ -628,8 +643,7 @@ class StepSearch {
     const ShapeChange& change = step.change;
     if (aim == Aim::shape)
       return change.finished > least_finished || change.cleared > least_cleared;
-    if (aim == Aim::volume)
-      return gained_by(step) > (task_.bench ? least_on_bench : least_gain) * capacity_;
+    if (aim == Aim::volume) return gained_by(step) > least_of_volume();
     if (aim == Aim::hard) return change.gained > least_in_hard * capacity_;
     if (task_.finishing) return change.at_end > least_lifted;
     return change.gained + change.at_end > least_at_wall * capacity_;

@@ -328,6 +328,10 @@ TEST(JobStations, OfAFaceAheadAreMetBetweenAgain) {
   EXPECT_LT(between, 0.7 * far) << "ridges between two places lie in no lane";
   EXPECT_GT(stations.front().shapes_from, frame.near);
   EXPECT_LT(stations.back().shapes_from, frame.near);
+  for (const JobStation& each : stations) EXPECT_TRUE(each.has_others_beside);
+  const HandMadeJob narrow(10.0, 1.2);
+  for (const JobStation& each : stations_of(narrow.frame(), narrow.settings))
+    EXPECT_FALSE(each.has_others_beside);
 }
 
 TEST(JobStations, PassesAlongAFaceLieCloserThanLanesForVolume) {
