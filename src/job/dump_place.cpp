@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/angles.hpp"
 #include "base/plan_geometry.hpp"
@@ -31,6 +32,7 @@ constexpr double most_outside = 0.8;    // share of a bucket beside the dump are
 constexpr double area_run = 1.0;        // of soil into an area from beside it [m]
 constexpr double heap_step = 0.15;      // between the places of a heap that are looked at [m]
 constexpr double farthest_run = 3.0;    // of soil from where it falls [m]
+constexpr double edge_step = 0.1;       // of an obstacle's outline [m]
 constexpr int halvings = 7;             // of the range in which the top of a heap lies
 
 /// Height of the cone of a bucket of soil.
@@ -69,13 +71,28 @@ double pin_reach(const Machine& machine, double height) {
   return left > 0.0 ? machine.boom_pin.x() + std::sqrt(left) - spare_reach : 0.0;
 }
 
+/// Points of an outline.
+template <typename Visit>
+void for_each_on(const SitePolygon& polygon, Visit visit) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d way = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const double steps = std::max(1.0, std::ceil(way.norm() / edge_step));
+    for (double k = 0.0; k < steps; ++k) visit(Vector2d(polygon[i] + k / steps * way));
+  }
+}
+
 /// Visits the places within reach, with the way to the left that the machine swings to them [rad].
 template <typename Visit>
-void for_each_place(const Machine& machine, const BasePose& base, double spare, Visit visit) {
+void for_each_place(const JobSettings& settings, const BasePose& base, double spare, Visit visit) {
+  const Machine& machine = settings.site.machine;
   const double reach = machine.boom_length + machine.arm_length;
+  std::vector<double> turns;
+  for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
+    if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
+    if (turns_clear(settings, base, turn)) turns.push_back(turn);
+  }
   for (double radius = nearest * reach; radius <= farthest * reach - spare; radius += radius_step) {
-    for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
-      if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
+    for (const double turn : turns) {
       const double heading = base.heading + turn;
       const Vector2d off(std::cos(heading), std::sin(heading));
       visit(Vector2d(Vector2d(base.x, base.y) + radius * off), turn);
@@ -88,7 +105,7 @@ std::optional<DumpPlace> in_truck(const JobSettings& settings, const Terrain& gr
   const JobTruck& truck = *settings.design.truck;
   const Machine& machine = settings.site.machine;
   std::optional<DumpPlace> best;
-  for_each_place(machine, base, spare, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
     if (best && std::abs(turn) >= std::abs(best->swing)) return;
     if (!is_well_in(truck.bed, place, inside_bed)) return;
     const auto at = cell_at(ground.bank, place.x(), place.y());
@@ -195,7 +212,7 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
   const HeapLayer layer(settings, map, ground);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(machine, base, spare, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (!at || std::isnan(ground.bank.z(at->row, at->col)) || !is_near_area(map, place)) return;
     if (std::abs(turn) >= least) return;
@@ -215,6 +232,26 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
 
 }  // namespace
 
+bool turns_clear(const JobSettings& settings, const BasePose& base, double swing) {
+  const Machine& machine = settings.site.machine;
+  const double reach = machine.tail_swing_radius() + off_tail;
+  const double half_width = 0.5 * machine.undercarriage_width() + off_tail;
+  const PlanFrame frame(Vector2d(base.x, base.y), base.heading);
+  bool clear = true;
+  for (const JobObstacle& obstacle : settings.design.obstacles) {
+    for_each_on(obstacle.polygon, [&](const Vector2d& place) {
+      const Vector2d at = frame.of(place);
+      const double away = at.norm();
+      if (away >= reach) return;
+      // From where the tail is as the machine looks ahead, in the sense of the swing.
+      const double turned = wrapped(std::atan2(at.y(), at.x()) - pi);
+      const double margin = std::asin(half_width / std::max(away, half_width));
+      clear &= turned < std::min(0.0, swing) - margin || turned > std::max(0.0, swing) + margin;
+    });
+  }
+  return clear;
+}
+
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
                                     const Terrain& ground, const BasePose& base, double spare) {
   if (settings.design.truck) return in_truck(settings, ground, base, spare);
@@ -223,7 +260,7 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
   const double cone = heap_height(settings);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(machine, base, spare, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (!at || !map.dump(at->row, at->col)) return;
     const double loose = ground.loose(at->row, at->col);

@@ -26,10 +26,18 @@ struct DumpPlace {
 
 /// The place of the dump areas, or the truck, with the least swing from where the machine stands,
 /// where a bucket of soil stays within the area; where none does, that from which least runs out.
+/// Only places to which the machine turns_clear() count.
 /// @param spare  of the reach that is not used [m]
 /// @return nothing if none is within reach
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
                                     const Terrain& ground, const BasePose& base,
                                     double spare = 0.0);
+
+/// Of the tail from what stands on a site, where the machine turns; ours [m].
+inline constexpr double off_tail = 0.3;
+
+/// Whether the upper structure turns from looking ahead to a swing [rad] without its tail, or a
+/// margin around it, over an obstacle.
+bool turns_clear(const JobSettings& settings, const BasePose& base, double swing);
 
 }  // namespace excavplan

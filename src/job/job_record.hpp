@@ -37,7 +37,7 @@ struct JobRecord {
   int bench = 0;                      ///< layer of a wide design that is dug from this station
   int fruitless_digs = 0;             ///< digs for volume in succession that lifted little
   int fruitless = 0;                  ///< finishing passes in succession that lifted little
-  std::vector<DigStart> barren;   ///< digs from this station that lifted much less than foretold
+  std::vector<DigStart> barren;  ///< digs from this station that lifted hardly any, or were blocked
   std::vector<SensorLook> looks;  ///< of the last scan that told its sensor
   double seen_before_look = 0.0;  ///< share of the design, when it last went to look
   std::optional<CarriedLoad> carried;

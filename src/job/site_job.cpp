@@ -56,7 +56,8 @@ constexpr double most_off = 0.042;           // share of cells that may stay so,
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double well_seen = 0.992;          // of it, so that no more is looked for
-constexpr int most_softer = 4;  // deviations of the strength below its mean that are tried
+constexpr int most_blocked = 4;  // digs from one place whose way is blocked, before it is left
+constexpr int most_softer = 4;   // deviations of the strength below its mean that are tried
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
 constexpr double after_stall = 0.7;          // of the depth of a cut
 constexpr double after_success = 1.1;        // likewise
@@ -146,6 +147,8 @@ struct SiteJob::State {
 
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
+  std::optional<JobStep> best_step(bool finishing);
+  void lay_aside(const JobStep& dig);
   std::vector<double> benches_below() const;
   std::optional<StepDig> best_dig_of(StepTask& task, const std::vector<double>& benches);
   StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
@@ -265,7 +268,17 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
   return best_dig(task);
 }
 
+/// What would be driven into something is laid aside for another dig from here.
 std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
+  for (int tries = 0; tries < most_blocked; ++tries) {
+    auto step = best_step(finishing);
+    if (!step || step->reason.empty()) return step;
+    lay_aside(*step);
+  }
+  return std::nullopt;
+}
+
+std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
   const auto dump = dump_place(settings, map, ground.expected(), record.base);
   if (!dump) return std::nullopt;
   BasePose straight = record.base;
@@ -544,6 +557,12 @@ void SiteJob::State::take_scan(const StepReport& report) {
   ++record.progress.scans;
 }
 
+/// Until the machine stands elsewhere.
+void SiteJob::State::lay_aside(const JobStep& dig) {
+  const double view = frame_at(stations[record.station]).heading - dig.base.heading;
+  record.barren.push_back({dig.lane, dig.path.start_x, wrapped(dig.swung - view)});
+}
+
 void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   record.learning.learn(*record.planned, record.signs, report);
   JobProgress& progress = record.progress;
@@ -557,10 +576,7 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   fruitless = is_fruitless ? fruitless + 1 : 0;
   // A single one may do with a new depth or strength.
   const bool is_again = finishing || stations[record.station].is_wide || fruitless > 1;
-  if (is_fruitless && is_again) {
-    const double view = frame_at(stations[record.station]).heading - step.base.heading;
-    record.barren.push_back({step.lane, step.path.start_x, wrapped(step.swung - view)});
-  }
+  if (is_fruitless && is_again) lay_aside(step);
   if (!finishing && lifted < poor_dig * step.predicted.payload_mass) record.wants_scan = true;
   progress.payload_mass += lifted;
   if (report.stalled) {

@@ -20,15 +20,15 @@ using Eigen::Vector2d;
 constexpr double off_cut = 0.3;           // of the tracks from ground that was dug
 constexpr double deepest_rut = 0.15;      // more is dug
 constexpr double highest_soil = 0.2;      // under the tracks
-constexpr double off_tail = 0.3;          // of what stands there
 constexpr double spare_reach = 0.5;       // to the dump, since what is laid there grows
+constexpr double spare_turn = 0.3;        // to it [rad], likewise
+constexpr double off_place = 0.1;         // where the machine comes to stand along the line
 constexpr double shift_step = 0.4;        // between the places that are looked at
 constexpr int most_along = 3;             // steps
 constexpr int most_beside = 9;            // likewise
 constexpr double step_along = 0.1;        // likewise along a line of stations [m]
 constexpr double most_shift = 1.5;        // along it
 constexpr double most_back_at_end = 0.8;  // of the first, which still reaches the far end
-constexpr double edge_step = 0.1;         // of an obstacle's outline
 constexpr double most_gap = 0.1;          // between what is dug from two places in succession
 
 double distance_to(const SitePolygon& polygon, const Vector2d& from) {
@@ -51,21 +51,20 @@ bool is_tail_clear(const JobSettings& settings, const Vector2d& at) {
   });
 }
 
-/// Points of an outline.
-template <typename Visit>
-void for_each_on(const SitePolygon& polygon, Visit visit) {
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d way = polygon[(i + 1) % polygon.size()] - polygon[i];
-    const double steps = std::max(1.0, std::ceil(way.norm() / edge_step));
-    for (double k = 0.0; k < steps; ++k) visit(Vector2d(polygon[i] + k / steps * way));
-  }
-}
-
 bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSettings& settings,
                   const JobMap& map, const Terrain& ground) {
   const BasePose base = base_at(frame, station, ground, settings.site.machine);
   const auto dump = dump_place(settings, map, ground, base);
-  return dump && turns_clear(settings, base, dump->swing);
+  if (!dump) return false;
+  const double swing = dump->swing + std::copysign(spare_turn, dump->swing);
+  bool clear = true;
+  for (const double off : {-off_place, off_place}) {
+    BasePose near = base;
+    near.x += off * std::cos(base.heading);
+    near.y += off * std::sin(base.heading);
+    clear &= turns_clear(settings, near, swing);
+  }
+  return clear;
 }
 
 }  // namespace
@@ -109,56 +108,81 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
   return meagre;
 }
 
-bool turns_clear(const JobSettings& settings, const BasePose& base, double swing) {
-  const Machine& machine = settings.site.machine;
-  const double reach = machine.tail_swing_radius() + off_tail;
-  const double half = std::asin(std::min(1.0, 0.5 * machine.undercarriage_width() / reach));
-  const PlanFrame frame(Vector2d(base.x, base.y), base.heading);
-  bool clear = true;
-  for (const JobObstacle& obstacle : settings.design.obstacles) {
-    for_each_on(obstacle.polygon, [&](const Vector2d& place) {
-      const Vector2d at = frame.of(place);
-      const double away = at.norm();
-      if (away >= reach) return;
-      // From where the tail is as the machine looks ahead, in the sense of the swing.
-      const double turned = wrapped(std::atan2(at.y(), at.x()) - pi);
-      const double margin = half + off_tail / std::max(away, off_tail);
-      clear &= turned < std::min(0.0, swing) - margin || turned > std::max(0.0, swing) + margin;
-    });
+namespace {
+
+/// Stations of one line that were moved, from the far end back.
+class ClearLine {
+ public:
+  ClearLine(const JobFrame& frame, const JobSettings& settings, const JobMap& map,
+            const Terrain& ground)
+      : frame_(frame), settings_(settings), map_(map), ground_(ground) {}
+
+  /// The next one where it stands clear; where no place serves, on both sides of what is in the
+  /// way; else as it is.
+  void add(const JobStation& usual) {
+    if (put(usual, most_shift)) return;
+    const std::size_t before = placed_.size();
+    const double room = placed_.empty() ? 0.0 : placed_.back().along - usual.along;
+    for (double away = step_along; away < room; away += step_along) {
+      if (!put(moved(usual, away), 0.0)) continue;
+      if (put(usual, most_shift)) return;
+      break;
+    }
+    placed_.resize(before);
+    placed_.push_back(usual);
   }
-  return clear;
-}
+
+  std::vector<JobStation> placed() && { return std::move(placed_); }
+
+ private:
+  static JobStation moved(JobStation station, double shift) {
+    station.along += shift;
+    return station;
+  }
+
+  /// So far forward that the next one reaches on from there, so far back as it reaches on itself.
+  double most_back(const JobStation& usual) const {
+    if (placed_.empty()) return -most_back_at_end;
+    const Machine& machine = settings_.site.machine;
+    const double last = placed_.back().along;
+    const double dug_to = last + work_range(frame_, machine, last).near;
+    const double reach = work_range(frame_, machine, usual.along).far;
+    return std::max(-most_shift, dug_to - most_gap - usual.along - reach);
+  }
+
+  /// @return whether it stands clear so near to where it was
+  bool put(const JobStation& usual, double widest) {
+    const double back = most_back(usual);
+    for (double away = 0.0; away <= widest; away += step_along) {
+      for (const double shift : {away, -away}) {
+        if (shift < back || !stands_clear(moved(usual, shift), frame_, settings_, map_, ground_))
+          continue;
+        placed_.push_back(moved(usual, shift));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const JobFrame& frame_;
+  const JobSettings& settings_;
+  const JobMap& map_;
+  const Terrain& ground_;
+  std::vector<JobStation> placed_;
+};
+
+}  // namespace
 
 std::vector<JobStation> clear_of_obstacles(std::vector<JobStation> stations, const JobFrame& frame,
                                            const JobSettings& settings, const JobMap& map,
                                            const Terrain& ground) {
   if (settings.design.obstacles.empty() || stations.empty()) return stations;
-  const JobStation last = stations.back();
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    const WorkRange range = work_range(frame, settings.site.machine, stations[i].along);
-    // So far forward that the next one reaches on from here, so far back as it reaches on itself.
-    double most_back = i == 0 ? -most_back_at_end : -most_shift;
-    if (i > 0) {
-      const WorkRange before = work_range(frame, settings.site.machine, stations[i - 1].along);
-      const double dug_to = stations[i - 1].along + before.near;
-      most_back = std::max(most_back, dug_to - most_gap - stations[i].along - range.far);
-    }
-    for (double away = 0.0; away <= most_shift; away += step_along) {
-      bool found = false;
-      for (const double shift : {away, -away}) {
-        if (shift < most_back) continue;
-        JobStation moved = stations[i];
-        moved.along += shift;
-        if (!stands_clear(moved, frame, settings, map, ground)) continue;
-        stations[i] = moved;
-        found = true;
-        break;
-      }
-      if (found) break;
-    }
-  }
-  if (stations.back().along > last.along) stations.push_back(last);  // it reaches the near end
-  return stations;
+  ClearLine line(frame, settings, map, ground);
+  for (const JobStation& each : stations) line.add(each);
+  std::vector<JobStation> clear = std::move(line).placed();
+  // It reaches the near end.
+  if (clear.back().along > stations.back().along) clear.push_back(stations.back());
+  return clear;
 }
 
 }  // namespace excavplan

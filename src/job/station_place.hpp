@@ -33,12 +33,9 @@ bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& 
 std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& frame,
                                         const JobStation& station);
 
-/// Whether the upper structure turns from looking ahead to a swing [rad] without its tail, or a
-/// margin around it, over an obstacle.
-bool turns_clear(const JobSettings& settings, const BasePose& base, double swing);
-
 /// Stations of one lane group, moved along their line so that the machine turns clear from each to
-/// its dump and no gap is left between what is dug from them; one that cannot stays.
+/// its dump and no gap is left between what is dug from them; what one place cannot serve, two do;
+/// one that cannot stays.
 /// @param ground  before the job
 std::vector<JobStation> clear_of_obstacles(std::vector<JobStation> stations, const JobFrame& frame,
                                            const JobSettings& settings, const JobMap& map,

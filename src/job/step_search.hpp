@@ -25,7 +25,7 @@ struct StepTask {
   const Terrain& ground;
   BasePose base;  ///< with the height that its edge keeps in truth
   DumpPlace dump;
-  const std::vector<DigStart>& barren;  ///< digs that lifted much less than foretold
+  const std::vector<DigStart>& barren;  ///< digs that lifted hardly any, or were blocked
   std::vector<WorkLine> lines = {};     ///< to dig along
   bool may_risk = false;                ///< a stall, to take off that end
   bool may_bite = true;                 ///< less than a bucket, where no more can be had

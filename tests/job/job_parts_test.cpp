@@ -433,16 +433,16 @@ TEST(JobStations, FromBeyondTheFarEndIsTheNearOne) {
   EXPECT_NEAR(at.x() - range.near, frame.far, 0.05);
 }
 
-TEST(JobStations, StandWhereTheTailTurnsClearOfAPole) {
+/// A pole so far ahead of the second station and to its left [m]; soil goes to the left.
+void expect_clear_of_pole(double ahead, double left) {
   HandMadeJob job;
   job.settings.design.start = BasePose{-4.0, 0.0, 0.0, 0.0};
   const JobFrame frame = job.frame();
   const Machine& machine = job.settings.site.machine;
   const auto usual = stations_of(frame, job.settings);
-  const Eigen::Vector2d behind = frame.place(usual[1].along - 1.0, -1.7);  // soil goes to the left
+  const Eigen::Vector2d at = frame.place(usual[1].along + ahead, left);
   job.settings.design.obstacles = {
-      {"pole", box(behind.x() - 0.15, behind.y() - 0.15, behind.x() + 0.15, behind.y() + 0.15),
-       6.0}};
+      {"pole", box(at.x() - 0.15, at.y() - 0.15, at.x() + 0.15, at.y() + 0.15), 6.0}};
   const JobMap map = job.map();
   const auto turn = [&](const JobStation& station) {
     const BasePose base = base_at(frame, station, job.ground, machine);
@@ -465,6 +465,15 @@ TEST(JobStations, StandWhereTheTailTurnsClearOfAPole) {
   for (std::size_t i = 0; i < usual.size(); ++i) EXPECT_EQ(same[i].along, usual[i].along);
 }
 
+TEST(JobStations, StandWhereTheTailTurnsClearOfAPole) { expect_clear_of_pole(-1.0, -1.7); }
+
+TEST(JobStations, StandOnBothSidesOfAPoleThatNoPlaceBetweenIsClearOf) {
+  for (const double ahead : {-0.6, -0.4, -0.2, 0.0, 0.2}) {
+    SCOPED_TRACE(ahead);
+    expect_clear_of_pole(ahead, -1.8);
+  }
+}
+
 TEST(JobStations, TheTailSweepsBehindOnTheSideAwayFromTheSwing) {
   HandMadeJob job;
   const auto clear_of = [&](double x, double y, double swing) {
@@ -476,6 +485,7 @@ TEST(JobStations, TheTailSweepsBehindOnTheSideAwayFromTheSwing) {
   EXPECT_FALSE(clear_of(-1.0, 1.7, -1.2));
   EXPECT_TRUE(clear_of(1.0, 1.7, -0.5));
   EXPECT_FALSE(clear_of(-1.9, 0.0, 0.0));
+  EXPECT_FALSE(clear_of(0.0, -1.75, 0.5));  // near the axis the tail takes up a wider angle
   EXPECT_TRUE(clear_of(-3.0, 0.0, 0.0));
 }
 
