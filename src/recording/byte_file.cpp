@@ -10,7 +10,7 @@ namespace excavplan {
 namespace {
 
 std::string place_of(const Origin& origin) {
-  const std::string byte = "byte " + std::to_string(origin.offset);
+  std::string byte = "byte " + std::to_string(origin.offset);
   if (origin.chunk == Origin::in_file) return byte;
   return byte + " of the chunk at byte " + std::to_string(origin.chunk);
 }
