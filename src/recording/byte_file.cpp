@@ -10,7 +10,7 @@ namespace excavplan {
 namespace {
 
 std::string place_of(const Origin& origin) {
-  const std::string byte = "byte " + std::to_string(origin.offset);
+  std::string byte = "byte " + std::to_string(origin.offset);
   if (origin.chunk == Origin::in_file) return byte;
   return byte + " of the chunk at byte " + std::to_string(origin.chunk);
 }
@@ -33,7 +33,11 @@ Bytes ByteFile::read(std::uint64_t offset, std::uint64_t count, const std::strin
          "at most " + std::to_string(most_bytes));
   }
   Bytes bytes(count);
-  file_.read(offset, bytes.data(), bytes.size());
+  try {
+    file_.read(offset, bytes.data(), bytes.size());
+  } catch (const Error& error) {
+    throw Unreadable(error.what());
+  }
   return bytes;
 }
 

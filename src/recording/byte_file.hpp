@@ -49,6 +49,7 @@ class ByteFile {
   const std::string& path() const { return file_.path(); }
   std::uint64_t size() const { return file_.size(); }
   /// @throws Error (bad_file) unless these bytes are in the file and at most most_bytes
+  /// @throws Unreadable if the system cannot read them
   Bytes read(std::uint64_t offset, std::uint64_t count, const std::string& what) const;
   /// @throws Error (bad_file) naming the byte
   [[noreturn]] void fail(std::uint64_t offset, const std::string& found,

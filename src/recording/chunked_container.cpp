@@ -133,6 +133,8 @@ void ChunkedContainer::check() {
     try {
       load(chunk);
       listed_places(i, all);
+    } catch (const Unreadable&) {
+      throw;
     } catch (const Unsupported&) {  // whole, for all that is known
     } catch (const Error& error) {
       chunk.lost = error.what();

@@ -4,12 +4,15 @@
 
 #include <array>
 #include <memory>
+#include <new>
+#include <string_view>
 
 #ifdef EXCAVPLAN_WITH_LZ4
 #include <lz4frame.h>
 #endif
 #ifdef EXCAVPLAN_WITH_ZSTD
 #include <zstd.h>
+#include <zstd_errors.h>
 #endif
 #ifdef EXCAVPLAN_WITH_BZ2
 #include <bzlib.h>
@@ -43,6 +46,7 @@ namespace {
 
 Bytes from_lz4(const CompressedPart& part) {
 #ifdef EXCAVPLAN_WITH_LZ4
+  constexpr std::string_view no_memory = "ERROR_allocation_failed";
   LZ4F_dctx* made = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION))) throw std::bad_alloc();
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
@@ -54,6 +58,7 @@ Bytes from_lz4(const CompressedPart& part) {
     std::size_t given = out.size() - written;
     hint = LZ4F_decompress(context.get(), out.data() + written, &given, part.bytes.data() + read,
                            &taken, nullptr);
+    if (LZ4F_isError(hint) && LZ4F_getErrorName(hint) == no_memory) throw std::bad_alloc();
     if (LZ4F_isError(hint)) fail_damaged(part, LZ4F_getErrorName(hint));
     if (taken == 0 && given == 0) fail_damaged(part, "more than it says to hold");
     read += taken;
@@ -72,6 +77,7 @@ Bytes from_zstd(const CompressedPart& part) {
   Bytes out(part.size);
   const std::size_t written =
       ZSTD_decompress(out.data(), out.size(), part.bytes.data(), part.bytes.size());
+  if (ZSTD_getErrorCode(written) == ZSTD_error_memory_allocation) throw std::bad_alloc();
   if (ZSTD_isError(written)) fail_damaged(part, ZSTD_getErrorName(written));
   require_size(part, written);
   return out;
@@ -87,6 +93,7 @@ Bytes from_bz2(const CompressedPart& part) {
   char* const input = const_cast<char*>(part.bytes.data());  // an old interface; only read
   const int result = BZ2_bzBuffToBuffDecompress(out.data(), &written, input,
                                                 static_cast<unsigned>(part.bytes.size()), 0, 0);
+  if (result == BZ_MEM_ERROR) throw std::bad_alloc();
   if (result == BZ_OUTBUFF_FULL) fail_damaged(part, "more than it says to hold");
   if (result != BZ_OK) fail_damaged(part, "bzip2 error " + std::to_string(result));
   require_size(part, written);

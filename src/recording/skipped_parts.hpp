@@ -40,6 +40,11 @@ class Unsupported : public Error {
   explicit Unsupported(const std::string& message) : Error(ErrorKind::bad_file, message) {}
 };
 
+/// No damage of a recording either: its disk or the system failed while it was read.
+class Unreadable : public Unsupported {
+  using Unsupported::Unsupported;
+};
+
 /// The parts that were left out, each once however often it was met.
 class SkippedParts {
  public:

@@ -13,11 +13,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
+#include <new>
 #include <optional>
+#include <system_error>
 #include <tuple>
 
 // The tables are those of rosbag2_storage_sqlite3: topics (id, name, type, serialization_format)
@@ -101,7 +104,9 @@ class SqliteRecording : public Container {
   void add_row(const MessageRow& row, std::vector<MessageRow>& rows) const;
   std::vector<MessageRow> rows_by_index(const std::string& ids, std::int64_t from, std::int64_t to);
   std::string text(sqlite3_stmt* statement, int column, const std::string& name);
+  const char* characters(sqlite3_stmt* statement, int column) const;
   [[noreturn]] void fail(const std::string& what);
+  int read_fault(int code) const;
 
   std::string path_;
   std::uint64_t size_ = 0;        // [byte]
@@ -242,31 +247,54 @@ bool SqliteRecording::step(sqlite3_stmt* statement) {
 }
 
 void SqliteRecording::fail(const std::string& what) {
+  if (!connection_) throw std::bad_alloc();
   const int code = sqlite3_errcode(connection_.get());
-  const char* const text = connection_ ? sqlite3_errmsg(connection_.get()) : "out of memory";
-  fail_at(path_, what, in_quotes(text) + " (SQLite " + std::to_string(code) + ")",
+  if (code == SQLITE_NOMEM) throw std::bad_alloc();
+  const int reason = read_fault(code);
+  if (reason != 0) {
+    throw Unreadable(path_ + ": cannot be read: " + std::generic_category().message(reason));
+  }
+  fail_at(path_, what,
+          in_quotes(sqlite3_errmsg(connection_.get())) + " (SQLite " + std::to_string(code) + ")",
           "a whole file of rosbag2");
+}
+
+/// Why the system could not read the file, as errno; 0 if it could. SQLite calls a file damaged
+/// whose disk answers by one of these three.
+int SqliteRecording::read_fault(int code) const {
+  int reason = 0;
+  sqlite3_file_control(connection_.get(), "main", SQLITE_FCNTL_LAST_ERRNO, &reason);
+  if (code == SQLITE_IOERR) return reason != 0 ? reason : EIO;
+  const bool is_of_disk = reason == EIO || reason == ENXIO || reason == ERANGE;
+  return code == SQLITE_CORRUPT && is_of_disk ? reason : 0;
+}
+
+/// Of the present row; nullptr if it holds none.
+const char* SqliteRecording::characters(sqlite3_stmt* statement, int column) const {
+  const auto* const found = reinterpret_cast<const char*>(sqlite3_column_text(statement, column));
+  if (found == nullptr && sqlite3_errcode(connection_.get()) == SQLITE_NOMEM)
+    throw std::bad_alloc();
+  return found;
 }
 
 std::int64_t SqliteRecording::integer(sqlite3_stmt* statement, int column,
                                       const std::string& name) {
   const std::int64_t value = sqlite3_column_int64(statement, column);
   if (sqlite3_column_type(statement, column) == SQLITE_INTEGER && value >= 0) return value;
-  const auto* const found = sqlite3_column_text(statement, column);
-  fail_at(path_, "column " + name,
-          found == nullptr ? "nothing" : in_quotes(reinterpret_cast<const char*>(found)),
+  const char* const found = characters(statement, column);
+  fail_at(path_, "column " + name, found == nullptr ? "nothing" : in_quotes(found),
           "a whole number of at least 0");
 }
 
 std::string SqliteRecording::text(sqlite3_stmt* statement, int column, const std::string& name) {
-  const auto* const found = sqlite3_column_text(statement, column);
+  const char* const found = characters(statement, column);
   const int size = sqlite3_column_bytes(statement, column);
   if (found == nullptr || size > longest_name) {
     fail_at(path_, "table topics, column " + name,
             found == nullptr ? "nothing" : std::to_string(size) + " bytes",
             "a text of at most " + std::to_string(longest_name) + " bytes");
   }
-  return {reinterpret_cast<const char*>(found), static_cast<std::size_t>(size)};
+  return {found, static_cast<std::size_t>(size)};
 }
 
 /// A view, a virtual table or a computed column would run what the file says.
@@ -282,7 +310,7 @@ void SqliteRecording::require_table(const std::string& name,
   std::size_t found = 0;
   const Statement list = prepare("PRAGMA table_xinfo(" + name + ")");
   while (step(list.get())) {
-    const auto* const column = reinterpret_cast<const char*>(sqlite3_column_text(list.get(), 1));
+    const char* const column = characters(list.get(), 1);
     const bool is_known =
         std::find(columns.begin(), columns.end(), column == nullptr ? "" : column) != columns.end();
     if (is_known && sqlite3_column_int(list.get(), 6) == 0) ++found;

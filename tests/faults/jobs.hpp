@@ -21,6 +21,11 @@ struct Job {
   bool slow = false;  ///< for signals alone
 };
 
+/// Of every container and compression.
+inline const Words recordings = {"scene.db3",      "scene_zstd.db3",  "scene_none.mcap",
+                                 "scene_lz4.mcap", "scene_zstd.mcap", "scene_lz4.bag",
+                                 "scene_bz2.bag"};
+
 /// Every n-th point of a cloud, as text.
 inline std::string thinned(const std::string& xyz, int n) {
   std::istringstream in(xyz);
@@ -41,16 +46,17 @@ inline void write_inputs(const TemporaryFolder& folder) {
   folder.write("depth.png", png_of(16, std::vector<std::uint16_t>(16 * 12, 2000)));
   folder.write("camera.json", intrinsics);
   folder.write("log.csv", "time_s,fuel_flow_ml_per_s\n0,2\n5,2\n");
-  folder.write("scene.db3", content_of(std::string(EXCAVPLAN_RECORDINGS) + "/scene.db3"));
+  for (const std::string& name : recordings) {
+    folder.write(name, content_of(EXCAVPLAN_RECORDINGS "/" + name));
+  }
   folder.write(
       "result.json",
       answer("estimate-density", {folder.file("before.xyz"), folder.file("after.xyz")}).dump());
 }
 
 inline std::vector<Job> jobs() {
-  return {
+  std::vector<Job> jobs = {
       {"inspect-cloud", {"before.xyz", "--frame", "camera", "--out", "cloud.ply"}, {"cloud.ply"}},
-      {"inspect-cloud", {"scene.db3"}, {}},
       {"measure-efficiency", {"log.csv", "--volume", "0.4"}, {}},
       {"depth-to-cloud",
        {"depth.png", "--intrinsics", "camera.json", "--out", "depth.pcd"},
@@ -77,6 +83,8 @@ inline std::vector<Job> jobs() {
        {"change.svg"},
        true},
   };
+  for (const std::string& name : recordings) jobs.push_back({"inspect-cloud", {name}, {}});
+  return jobs;
 }
 
 }  // namespace excavplan::test

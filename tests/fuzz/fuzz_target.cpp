@@ -5,9 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include <excavplan/base/error.hpp>
 
@@ -17,11 +18,16 @@
 namespace excavplan::test {
 namespace {
 
-/// A file in memory, gone at the end.
+/// A file in memory, in a folder of its own for what a reader puts beside it; gone at the end.
 class ScratchFile {
  public:
-  ScratchFile() : path_("/dev/shm/excavplan-fuzz-" + std::to_string(::getpid())) {}
-  ~ScratchFile() { std::remove(path_.c_str()); }
+  ScratchFile() : folder_("/dev/shm/excavplan-fuzz-" + std::to_string(::getpid())) {
+    std::filesystem::create_directory(folder_);
+  }
+  ~ScratchFile() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
   const std::string& holding(std::string_view bytes) const {
@@ -31,7 +37,8 @@ class ScratchFile {
   }
 
  private:
-  std::string path_;
+  std::string folder_;
+  std::string path_ = folder_ + "/file";
 };
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include <excavplan/base/data_files.hpp>
@@ -123,9 +124,11 @@ std::string read_table(const std::string& path) {
   return said.text();
 }
 
+/// Cells row by row from the top, as the files of grids hold them.
 void say(Said& said, const HeightMap& map) {
   said.all("origin", map.origin).add("cell", map.cell_size);
-  said.add("rows", static_cast<double>(map.z.rows())).all("z", map.z.reshaped());
+  said.add("rows", static_cast<double>(map.z.rows()));
+  said.all("z", map.z.colwise().reverse().transpose().reshaped());
 }
 
 std::string read_ground(const std::string& path) {
@@ -148,13 +151,20 @@ std::string read_grid(const std::string& path) {
   return said.text();
 }
 
-/// With grids of the names that the valid file has in the folder.
-std::string read_plain_ground(const std::string& path) {
+/// Writes grids of the names that the valid file has.
+void write_grids(const std::filesystem::path& folder) {
   constexpr const char* head = "ncols 2\nnrows 1\nxllcorner 1\nyllcorner 2\ncellsize 0.5\n";
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (const auto& [name, cells] :
        {std::pair("bank.asc", "0.5 -9999"), {"loose.asc", "0.25 0"}, {"dense.asc", "40 60"}}) {
     std::ofstream(folder / name) << head << cells << '\n';
+  }
+}
+
+/// Of a file its grids are put beside it; what is none, as /dev/null, lies in no folder of ours.
+std::string read_plain_ground(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    write_grids(std::filesystem::path(path).parent_path());
   }
   const PlainGround plain = load_plain_ground(path);
   Said said;

@@ -17,15 +17,14 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell i
 machine, loam = ex.load_machine("zx120"), ex.load_soil("loam")
 print("begins", flush=True)
 try:
-    ex.plan_dig(machine, loam, 40, method="search",
-                search=ex.DigSearchOptions(evaluations=100000, seconds=100))
+    ex.build_path_library(machine, loam, range(1, 100), [0.01 * i for i in range(21)])  # 2079 searches
 except KeyboardInterrupt:
     print("interrupted")
 """
 
 
 class Interrupts(unittest.TestCase):
-    def test_ctrl_c_ends_a_search(self):
+    def test_ctrl_c_ends_searches(self):
         with subprocess.Popen([sys.executable, "-c", PROGRAM], stdout=subprocess.PIPE,
                               text=True) as running:
             self.assertEqual(running.stdout.readline(), "begins\n")
