@@ -224,7 +224,7 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   task.may_risk = record.progress.stalls == 0;
   task.may_bite = !is_dug_out(record.base);
   task.finishing = finishing;
-  task.is_wide = stations[record.station].has_others_beside;
+  task.has_others_beside = stations[record.station].has_others_beside;
   task.has_faces = frame.is_battered;
   task.keeps_load = finishing && may_keep(0.0);
   task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;

@@ -310,7 +310,8 @@ class StepSearch {
     for (double start = line.far; start > line.near + start_step; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
       lay_out_layers(lane, start, attitudes, rules_in(lane));
-      if (task_.is_wide) lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
+      if (task_.has_others_beside)
+        lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
       lay_out_face(lane, start);
     }
   }
@@ -619,7 +620,7 @@ class StepSearch {
   /// In a wide design of what the bucket lifts: what it pushes aside is lifted from another
   /// lane.
   double gained_by(const StepDig& step) const {
-    return task_.is_wide ? step.dig.payload_volume / bulking() : step.change.gained;
+    return task_.has_others_beside ? step.dig.payload_volume / bulking() : step.change.gained;
   }
 
   /// Of the bank, as it is dug.

@@ -32,16 +32,16 @@ struct StepTask {
   double slack = 0.0;  ///< so far below the design ground does not count as too deep [m]
   /// A layer of a wide design is dug off before what is below this height of the site [m].
   std::optional<double> bench = {};
-  bool is_wide = false;           ///< soil that leaves its lane for another one is no loss
-  bool finishing = false;         ///< along the floor, for its shape
-  bool has_faces = false;         ///< some of the design is neither floor nor wall
-  bool keeps_load = false;        ///< a load that the bucket can keep is not dumped
-  double carried = 0.0;           ///< loose, in the bucket [m^3]
-  double allowance = 0.0;         ///< over the design, below which nothing is cut [m]
-  double density_percent = 50.0;  ///< of the bank, as believed
-  double strength_factor = 1.0;   ///< on the soil's strength, as believed
-  double hard_factor = 1.0;       ///< likewise, at which no dig may stall
-  double deepest_cut = 0.5;       ///< of one dig below the ground [m]
+  bool has_others_beside = false;  ///< soil that leaves its lane for another one is no loss
+  bool finishing = false;          ///< along the floor, for its shape
+  bool has_faces = false;          ///< some of the design is neither floor nor wall
+  bool keeps_load = false;         ///< a load that the bucket can keep is not dumped
+  double carried = 0.0;            ///< loose, in the bucket [m^3]
+  double allowance = 0.0;          ///< over the design, below which nothing is cut [m]
+  double density_percent = 50.0;   ///< of the bank, as believed
+  double strength_factor = 1.0;    ///< on the soil's strength, as believed
+  double hard_factor = 1.0;        ///< likewise, at which no dig may stall
+  double deepest_cut = 0.5;        ///< of one dig below the ground [m]
 };
 
 /// A dig, with what it does to the shape of the ground.
