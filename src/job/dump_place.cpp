@@ -9,6 +9,7 @@
 
 #include "base/angles.hpp"
 #include "base/plan_geometry.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,6 +31,7 @@ constexpr double inside_bed = 0.5;      // of a truck's border, so that the load
 constexpr double spare_reach = 0.1;     // of what the joints allow [m]
 constexpr double most_outside = 0.8;    // share of a bucket beside the dump areas
 constexpr double area_run = 1.0;        // of soil into an area from beside it [m]
+constexpr double farthest_off = 4.0;    // of soil from areas that are full [m]
 constexpr double heap_step = 0.15;      // between the places of a heap that are looked at [m]
 constexpr double farthest_run = 3.0;    // of soil from where it falls [m]
 constexpr double edge_step = 0.1;       // of an obstacle's outline [m]
@@ -159,10 +161,17 @@ class HeapLayer {
     }
   }
 
+  /// Soil that runs does not know how deep it is behind the edge of the cut.
+  double surface(Cell at) const {
+    const double now = surface_of(ground_, at);
+    const bool is_cut = !std::isnan(map_.target.z(at.row, at.col));
+    return is_cut ? std::fmax(now, map_.before(at.row, at.col)) : now;
+  }
+
   double volume(const Vector2d& place, double top) const {
     double sum = 0.0;
     for_each_about(place, farthest_run, [&](Cell at, double away) {
-      sum += std::max(0.0, top - repose_ * away - surface_of(ground_, at));
+      sum += std::max(0.0, top - repose_ * away - surface(at));
     });
     return heap_step * heap_step * sum;
   }
@@ -173,13 +182,13 @@ class HeapLayer {
     double all = 0.0;
     for_each_about(place, farthest_run + edge_of_cut, [&](Cell at, double away) {
       const auto reaches = [&](double margin) {
-        return top - repose_ * std::max(0.0, away - margin) > surface_of(ground_, at);
+        return top - repose_ * std::max(0.0, away - margin) > surface(at);
       };
       const bool is_cut = !std::isnan(map_.target.z(at.row, at.col));
       const bool is_untouched = map_.untouched(at.row, at.col);
       if ((is_cut && reaches(edge_of_cut)) || (is_untouched && reaches(off_keep_out)))
         heap.is_allowed = false;
-      const double height = std::max(0.0, top - repose_ * away - surface_of(ground_, at));
+      const double height = std::max(0.0, top - repose_ * away - surface(at));
       all += height;
       if (!map_.dump(at.row, at.col)) heap.outside += height;
     });
@@ -194,10 +203,10 @@ class HeapLayer {
   double cone_;  ///< height of a bucket of soil on level ground [m]
 };
 
-bool is_near_area(const JobMap& map, const Vector2d& place) {
-  constexpr int ways = 8;
+bool is_near_area(const JobMap& map, const Vector2d& place, double near) {
+  constexpr int ways = 16;
   for (int i = 0; i <= ways; ++i) {
-    const double angle = 2.0 * pi * i / ways, away = i < ways ? area_run : 0.0;
+    const double angle = 2.0 * pi * i / ways, away = i < ways ? near : 0.0;
     const auto at =
         cell_at(map.target, place.x() + away * std::cos(angle), place.y() + away * std::sin(angle));
     if (at && map.dump(at->row, at->col)) return true;
@@ -205,32 +214,48 @@ bool is_near_area(const JobMap& map, const Vector2d& place) {
   return false;
 }
 
+/// How far beside the areas soil may be laid.
+struct Beside {
+  double share;  ///< of a bucket
+  double away;   ///< [m]
+};
+
 /// Where the least of a bucket comes to lie beside the areas.
 std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap& map,
-                                       const Terrain& ground, const BasePose& base, double spare) {
+                                       const Terrain& ground, const BasePose& base, double spare,
+                                       const Beside& most) {
   const Machine& machine = settings.site.machine;
   const HeapLayer layer(settings, map, ground);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
   for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
-    if (!at || std::isnan(ground.bank.z(at->row, at->col)) || !is_near_area(map, place)) return;
-    if (std::abs(turn) >= least) return;
+    if (std::abs(turn) >= least || !at || std::isnan(ground.bank.z(at->row, at->col))) return;
+    const bool is_cut = !std::isnan(map.target.z(at->row, at->col));
+    if (is_cut || !is_near_area(map, place, most.away)) return;
     const Heap heap = layer.lay(place);
     const double pin = heap.top + drop + machine.bucket_length;
     const double away = std::hypot(place.x() - base.x, place.y() - base.y);
     const double cost = outside_price * heap.outside + std::abs(turn) +
                         height_price * std::max(0.0, heap.top - base.z);
-    if (!heap.is_allowed || heap.outside > most_outside || cost >= least ||
+    if (!heap.is_allowed || heap.outside > most.share || cost >= least ||
         away > pin_reach(machine, pin - base.z))
       return;
     least = cost;
-    best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
+    best = DumpPlace{
+        {place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false, heap.outside};
   });
   return best;
 }
 
 }  // namespace
+
+std::vector<Warning> dump_warnings(const DumpPlace& dump) {
+  if (!(dump.outside > 0.5)) return {};
+  return {{WarningCode::dump_areas_full,
+           "the places for soil are full, or out of reach: " + readable(100.0 * dump.outside, 2) +
+               " % of this bucket comes to lie beside them"}};
+}
 
 bool turns_clear(const JobSettings& settings, const BasePose& base, double swing) {
   const Machine& machine = settings.site.machine;
@@ -253,7 +278,8 @@ bool turns_clear(const JobSettings& settings, const BasePose& base, double swing
 }
 
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
-                                    const Terrain& ground, const BasePose& base, double spare) {
+                                    const Terrain& ground, const BasePose& base, double spare,
+                                    bool may_overflow) {
   if (settings.design.truck) return in_truck(settings, ground, base, spare);
   const Machine& machine = settings.site.machine;
   const double repose = std::tan(settings.site.soil.angle_of_repose);
@@ -263,16 +289,20 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
   for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (!at || !map.dump(at->row, at->col)) return;
-    const double loose = ground.loose(at->row, at->col);
     const double surface = surface_of(ground, *at);
     if (std::isnan(surface)) return;
+    const double risen =
+        std::fmax(ground.loose(at->row, at->col), surface - map.before(at->row, at->col));
     const double cost = std::abs(turn) + height_price * std::max(0.0, surface - base.z);
-    if (cost >= least || !fits(map, place, (loose + cone) / repose)) return;
+    if (cost >= least || !fits(map, place, (risen + cone) / repose)) return;
     least = cost;
     const double pin = surface + cone + drop + machine.bucket_length;
     best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
   });
-  return best ? best : least_outside(settings, map, ground, base, spare);
+  if (best) return best;
+  best = least_outside(settings, map, ground, base, spare, {most_outside, area_run});
+  if (best || !may_overflow) return best;
+  return least_outside(settings, map, ground, base, spare, {1.0, farthest_off});
 }
 
 }  // namespace excavplan

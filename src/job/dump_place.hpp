@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include <excavplan/base/warning.hpp>
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/job/job_settings.hpp>
 
@@ -22,16 +24,21 @@ struct DumpPlace {
   double swing = 0.0;   ///< to it from the machine's heading, to the left [rad]
   double height = 0.0;  ///< of the pin over the ground under the machine [m]
   bool in_truck = false;
+  double outside = 0.0;  ///< share of a bucket that comes to lie beside the dump areas [-]
 };
+
+/// A dump_areas_full, if most of a bucket comes to lie beside them.
+std::vector<Warning> dump_warnings(const DumpPlace& dump);
 
 /// The place of the dump areas, or the truck, with the least swing from where the machine stands,
 /// where a bucket of soil stays within the area; where none does, that from which least runs out.
 /// Only places to which the machine turns_clear() count.
 /// @param spare  of the reach that is not used [m]
+/// @param may_overflow  where the areas are full, onto the ground around them
 /// @return nothing if none is within reach
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
-                                    const Terrain& ground, const BasePose& base,
-                                    double spare = 0.0);
+                                    const Terrain& ground, const BasePose& base, double spare = 0.0,
+                                    bool may_overflow = false);
 
 /// Of the tail from what stands on a site, where the machine turns; ours [m].
 inline constexpr double off_tail = 0.3;

@@ -26,6 +26,7 @@ using Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double flattest_face = 0.15;  // of a batter; ours [rad]
+constexpr double wide_wall = 0.15;      // of a wall, so that it is none of the floor; ours [m]
 constexpr double least_faces = 0.1;     // share of the design; ours
 constexpr double around_rim = 0.1;      // of a cell, where ground is compared; ours [m]
 constexpr double least_share = 0.5;     // of a cell that is one of the design
@@ -71,6 +72,20 @@ double share_of_faces(const JobMap& map, double heading, bool is_any) {
     if ((is_any ? slope.norm() : std::abs(slope.dot(aside))) > flattest) ++faces;
   });
   return count > 0 ? static_cast<double>(faces) / count : 0.0;
+}
+
+/// A bucket's lane does not reach into walls that are too steep to count: only its floor has lanes.
+/// @param rim  of the floor that does not count [m]
+void keep_to_floor(const JobMap& map, double rim, JobFrame& frame) {
+  Eigen::AlignedBox1d floor;
+  for_each_cell(map.counts, [&](Cell at) {
+    if (map.counts(at.row, at.col))
+      floor.extend(frame.of({map.target.x(at.col), map.target.y(at.row)}).tail<1>());
+  });
+  if (floor.isEmpty()) return;
+  const double right = floor.min()(0) - rim, left = floor.max()(0) + rim;
+  if (right - frame.right > wide_wall) frame.right = right;
+  if (frame.left - left > wide_wall) frame.left = left;
 }
 
 /// Where the design does not lie below the ground, it asks for nothing; each cell by the mean
@@ -130,6 +145,7 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   const JobDesign& design = settings.design;
   JobMap map;
   map.target = ground;
+  map.before = ground.z;
   const DesignCover cover = cover_of(settings.surface, ground);
   map.target.z =
       below_ground((cover.share >= least_share).select(cover.height, std::nan("")), ground);
@@ -177,6 +193,7 @@ JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned)
   frame.far = box.max().x() + half;
   frame.right = box.min().y() - half;
   frame.left = box.max().y() + half;
+  keep_to_floor(map, settings.design.edge_margin + half, frame);
   frame.is_battered = share_of_faces(map, frame.heading, true) > least_faces;
   frame.faces_across = share_of_faces(map, frame.heading, false);
   return frame;

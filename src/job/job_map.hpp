@@ -19,10 +19,11 @@ namespace excavplan {
 
 /// What is asked for in each cell.
 struct JobMap {
-  HeightMap target;           ///< design height; NaN where it does not lie below the ground [m]
-  Mask counts;                ///< whether the cell counts for the deviation (CutOptions)
-  Mask dump;                  ///< whether soil may be laid there
-  Mask untouched;             ///< a keep-out of any depth, or an obstacle: no soil may fall there
+  HeightMap target;        ///< design height; NaN where it does not lie below the ground [m]
+  Eigen::ArrayXXd before;  ///< height of the ground before the job; NaN where it was not seen [m]
+  Mask counts;             ///< whether the cell counts for the deviation (CutOptions)
+  Mask dump;               ///< whether soil may be laid there
+  Mask untouched;          ///< a keep-out of any depth, or an obstacle: no soil may fall there
   Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none
 };
 
@@ -62,7 +63,7 @@ struct JobFrame {
   double heading = 0.0;       ///< of the line, away from where the job ends [rad]
   double near = 0.0;          ///< of the design along the line [m]
   double far = 0.0;           ///< likewise [m]
-  double right = 0.0;         ///< of the design beside the line, mostly below 0 [m]
+  double right = 0.0;         ///< of its lanes beside the line, mostly below 0 [m]
   double left = 0.0;          ///< likewise [m]
   bool is_battered = false;   ///< some of the design is neither floor nor wall
   double faces_across = 0.0;  ///< share of what counts of the design that rises across the line

@@ -33,10 +33,13 @@ constexpr double most_left = 0.5;          // of such faces, for another line of
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
-constexpr double widest_of_wide = 1.0;   // likewise where the design is wider than such lanes [m]
-constexpr double widest_straight = 1.1;  // of it, at most, where no machine is exact [m]
-constexpr double off_wall = 0.05;        // of passes beside it [m]
-constexpr double fan_step = 0.1;         // between planes through the swing axis [rad]
+constexpr double widest_for_volume = 1.6;  // likewise of a wide design [m]
+constexpr double widest_at_wall = 1.0;     // likewise of its passes: a bucket that is yawed further
+                                           // turns its back into the wall as it curls [m]
+constexpr double widest_straight = 1.1;    // of both, at most, where no machine is exact [m]
+constexpr double least_of_benches = 2.0;   // between the outermost lanes [m]
+constexpr double off_wall = 0.05;          // of passes beside it [m]
+constexpr double fan_step = 0.1;           // between planes through the swing axis [rad]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
@@ -71,8 +74,9 @@ JobStation station_at(const JobFrame& frame, double along, const std::vector<dou
   return station;
 }
 
-/// As few groups as are all within reach aside.
-std::vector<std::vector<double>> wide_groups_of(const std::vector<double>& lanes) {
+/// As few groups as are all so near aside.
+std::vector<std::vector<double>> groups_within(double widest_lane_beside,
+                                               const std::vector<double>& lanes) {
   for (std::size_t count = 1;; ++count) {
     std::vector<std::vector<double>> groups;
     double widest = 0.0;
@@ -82,14 +86,30 @@ std::vector<std::vector<double>> wide_groups_of(const std::vector<double>& lanes
           lanes.begin() + static_cast<std::ptrdiff_t>((g + 1) * lanes.size() / count));
       widest = std::max(widest, groups.back().back() - groups.back().front());
     }
-    if (widest <= 2.0 * widest_of_wide) return groups;
+    if (widest <= 2.0 * widest_lane_beside) return groups;
   }
 }
 
 /// Whether a design is dug in benches from few places: not where all lanes run along its faces.
 bool wants_benches(const JobFrame& frame, const std::vector<double>& lanes) {
   const bool runs_on_faces = frame.is_battered && !(frame.faces_across > least_across);
-  return !runs_on_faces && wide_groups_of(lanes).size() > 1;
+  return !runs_on_faces && lanes.back() - lanes.front() > least_of_benches;
+}
+
+/// From the middle of a wide group its soil is dug evenly; walls and floor are cut from nearer to
+/// each side.
+void add_wide(const JobFrame& frame, double along, const std::vector<double>& lanes,
+              std::vector<JobStation>& stations) {
+  const auto sides = groups_within(widest_at_wall, lanes);
+  stations.push_back(station_at(frame, along, lanes));
+  stations.back().is_wide = true;
+  stations.back().leaves_passes = sides.size() > 1;
+  if (sides.size() < 2) return;
+  for (const auto& side : sides) {
+    stations.push_back(station_at(frame, along, side));
+    stations.back().is_wide = true;
+    stations.back().is_again = true;
+  }
 }
 
 /// Passes also run a little off the walls, as one that stands too far inside would stop them; and
@@ -198,11 +218,13 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   const Machine& machine = settings.site.machine;
   const auto lanes_of_all = lanes_of(frame, machine.bucket.width_outside);
   const bool is_wide = wants_benches(frame, lanes_of_all);
-  const double first = frame.far - at_reach(machine, is_wide ? end_of_wide : end_wall);
+  const double first =
+      frame.far - at_reach(machine, is_wide && frame.is_battered ? end_of_wide : end_wall);
   const double last = last_of(frame, machine);
   const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
-  const auto groups = is_wide ? wide_groups_of(lanes_of_all) : groups_of(lanes_of_all);
+  const auto groups =
+      is_wide ? groups_within(widest_for_volume, lanes_of_all) : groups_of(lanes_of_all);
   const double soil = side_of_soil(frame, settings.design);
   // Else every other time from the other side: the machine need not go back across.
   const auto starts_left = [&](int row) { return soil == 0.0 ? row % 2 == 1 : soil < 0.0; };
@@ -212,9 +234,12 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
     const double along = first + step * i;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
-      stations.push_back(station_at(frame, along, lanes));
-      stations.back().is_wide = is_wide;
-      stations.back().has_others_beside = groups.size() > 1;
+      const std::size_t first_of_group = stations.size();
+      if (is_wide)
+        add_wide(frame, along, lanes, stations);
+      else
+        stations.push_back(station_at(frame, along, lanes));
+      stations[first_of_group].has_others_beside = groups.size() > 1;
       if (!is_wide && groups.size() > 1 && i < more)
         stations.back().shapes_from = along + step + farthest_of(machine) - overlap;
     }
@@ -226,11 +251,17 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
 std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings& settings) {
   const JobFrame back = reversed(frame);
   const Machine& machine = settings.site.machine;
+  const auto lanes_of_all = lanes_of(back, machine.bucket.width_outside);
+  const double along = back.near - nearest_of(machine);
   std::vector<JobStation> stations;
-  for (const auto& lanes : groups_of(lanes_of(back, machine.bucket.width_outside))) {
-    stations.push_back(station_at(back, back.near - nearest_of(machine), lanes));
-    stations.back().is_beyond = true;
+  if (wants_benches(frame, lanes_of_all)) {
+    for (const auto& lanes : groups_within(widest_for_volume, lanes_of_all))
+      add_wide(back, along, lanes, stations);
+  } else {
+    for (const auto& lanes : groups_of(lanes_of_all))
+      stations.push_back(station_at(back, along, lanes));
   }
+  for (JobStation& each : stations) each.is_beyond = true;
   return stations;
 }
 
@@ -261,7 +292,7 @@ std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& statio
     const double beside = lane - at.y();
     if (!station.is_wide || std::abs(beside) <= widest_straight) {
       lines.push_back({0.0, beside, range.near, range.far, range.ends_at_wall});
-    } else if (!finishing) {
+    } else {
       for (const double ahead : {range.near, range.far})
         fan.extend(Eigen::Matrix<double, 1, 1>(std::atan2(beside, ahead)));
     }

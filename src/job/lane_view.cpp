@@ -131,6 +131,8 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
   const double slack = rules.slack;
   const double area = surface_.cell_size * surface_.cell_size;
   ShapeChange change;
+  double risen =
+      0.0;  // of what must not be touched; where a heap comes to rest, its noise does not
   for_each_cell(patch.bank, [&](Cell at) {
     const Cell cell = {at.row + patch.row, at.col + patch.col};
     const double before = surface_.z(cell.row, cell.col);
@@ -140,8 +142,10 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     if (std::isnan(target)) {
       const double bank = ground_.terrain().bank.z(cell.row, cell.col);
       change.too_deep += area * std::max(0.0, bank - patch.bank(at.row, at.col));
-      if (after > before && !dump_(cell.row, cell.col)) change.spilled += area * (after - before);
-      if (untouched_(cell.row, cell.col)) change.touched += area * std::abs(after - before);
+      const double loose = ground_.terrain().loose(cell.row, cell.col);
+      if (!dump_(cell.row, cell.col))
+        change.spilled += area * (patch.loose(at.row, at.col) - loose);
+      if (untouched_(cell.row, cell.col)) risen += area * (after - before);
       return;
     }
     const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));
@@ -161,6 +165,8 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     change.too_deep +=
         area * (std::max(0.0, target - slack - after) - std::max(0.0, target - slack - before));
   });
+  change.touched = std::abs(risen);
+  change.spilled = std::max(0.0, change.spilled);
   return change;
 }
 

@@ -97,7 +97,15 @@ struct SiteJob::State {
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
     }
     const JobStation last = stations.back();
+    std::vector<JobStation> near_end;
+    std::copy_if(stations.begin(), stations.end(), std::back_inserter(near_end),
+                 [&](const JobStation& each) { return each.along == last.along; });
     stations.insert(stations.end(), beyond.begin(), beyond.end());
+    if (last.is_wide) {  // each end once more, when the other is dug
+      for (JobStation& each : near_end) each.is_again = true;
+      stations.insert(stations.end(), near_end.begin(), near_end.end());
+      stations.insert(stations.end(), beyond.begin(), beyond.end());
+    }
     const JobStation lookout;
     stations.insert(stations.end(),
                     {lookout, lookout, lookout, lookout, last, lookout, lookout, lookout, lookout});
@@ -122,13 +130,14 @@ struct SiteJob::State {
     return station;
   }
 
-  /// From which the far end of an upright design can be dug.
+  /// From which the far end of a design can be dug, if it is upright or wide.
   std::vector<JobStation> places_beyond() const {
     std::vector<JobStation> places;
-    if (frame.is_battered) return places;
-    for (JobStation& each : stations_beyond(frame, settings)) {
-      if (can_dig_from(each)) places.push_back(std::move(each));
-    }
+    const std::vector<JobStation> all = stations_beyond(frame, settings);
+    if (frame.is_battered && !all.front().is_wide) return places;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(places),
+                 [&](const JobStation& each) { return can_dig_from(each); });
+    if (all.front().is_wide && places.size() < all.size()) places.clear();
     return places;
   }
 
@@ -136,8 +145,10 @@ struct SiteJob::State {
   bool can_dig_from(const JobStation& station) const {
     const JobFrame line = frame_at(station);
     const Machine& machine = settings.site.machine;
-    return can_stand(line, station, machine, map) &&
-           dump_place(settings, map, first, base_at(line, station, first, machine));
+    const auto place = station.is_wide ? nearest_place({settings, map, first, first}, line, station)
+                                       : std::optional(station);
+    return place && (station.is_wide || can_stand(line, *place, machine, map)) &&
+           dump_place(settings, map, first, base_at(line, *place, first, machine));
   }
 
   JobProgress progress() const {
@@ -252,10 +263,12 @@ std::vector<double> SiteJob::State::benches_below() const {
   return benches;
 }
 
-/// From the bench that was dug last, down to the design.
+/// From the bench that was dug last, down to the design. What lies deeper can come with what only a
+/// bite would take off a bench.
 std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
                                                    const std::vector<double>& benches) {
   const int count = static_cast<int>(benches.size());
+  const bool may_bite = std::exchange(task.may_bite, false);
   for (int bench = std::min(record.bench, count); bench < count; ++bench) {
     task.bench = benches[static_cast<std::size_t>(bench)];
     record.bench = bench + 1;
@@ -265,6 +278,7 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
     return dig;
   }
   task.bench.reset();
+  task.may_bite = may_bite;
   return best_dig(task);
 }
 
@@ -279,7 +293,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
 }
 
 std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
-  const auto dump = dump_place(settings, map, ground.expected(), record.base);
+  const auto dump = dump_place(settings, map, ground.expected(), record.base, 0.0, true);
   if (!dump) return std::nullopt;
   BasePose straight = record.base;
   straight.heading = frame_at(stations[record.station]).heading;
@@ -311,6 +325,8 @@ std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
     foretell(step, beside, *dig);
     (void)check_motion(step);
   }
+  const auto more = dump_warnings(*dump);
+  step.warnings.insert(step.warnings.end(), more.begin(), more.end());
   record.planned = dig->dig;
   record.signs = dig->signs;
   return step;
@@ -359,7 +375,7 @@ bool SiteJob::State::may_keep(double more) const {
 /// What passes left in the bucket is dumped, and its last ones are seen.
 std::optional<JobStep> SiteJob::State::dump_step() {
   if (!record.carried) return std::nullopt;
-  const auto dump = dump_place(settings, map, ground.expected(), record.base);
+  const auto dump = dump_place(settings, map, ground.expected(), record.base, 0.0, true);
   if (!dump) return std::nullopt;
   JobStep step =
       step_of(JobAction::scan, "to dump what passes left in the bucket, and to see them");
@@ -469,8 +485,9 @@ JobStep SiteJob::State::decide() {
   const std::size_t passes = ground.unseen_digs(JobAction::finish);
   if (ground.unseen_digs() > passes || passes >= most_unseen_passes)
     return step_of(JobAction::scan, "to see what is left");
-  if (record.passes_here < most_passes && record.fruitless < most_fruitless &&
-      wants_passes(record.base) && (!is_wide || is_dug_out(record.base))) {
+  if (!here().leaves_passes && record.passes_here < most_passes &&
+      record.fruitless < most_fruitless && wants_passes(record.base) &&
+      (!is_wide || is_dug_out(record.base))) {
     if (auto step = dig_step(true)) return *std::move(step);
   }
   if (auto step = dump_step()) return *std::move(step);
@@ -498,7 +515,7 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
 std::optional<JobStation> SiteJob::State::place_to_dump_from() const {
   const JobStation& station = stations[record.station];
   if (!record.has_arrived || !station.is_wide) return std::nullopt;
-  if (dump_place(settings, map, ground.expected(), record.base)) return std::nullopt;
+  if (dump_place(settings, map, ground.expected(), record.base, 0.0, true)) return std::nullopt;
   const JobFrame line = frame_at(station);
   auto place = nearest_place({settings, map, first, ground.expected()}, line, station);
   if (!place) return place;

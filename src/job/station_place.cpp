@@ -17,19 +17,20 @@ namespace {
 using Eigen::Vector2d;
 
 // Numbers of our own choice [m].
-constexpr double off_cut = 0.3;           // of the tracks from ground that was dug
-constexpr double deepest_rut = 0.15;      // more is dug
-constexpr double highest_soil = 0.2;      // under the tracks
-constexpr double spare_reach = 0.5;       // to the dump, since what is laid there grows
-constexpr double spare_turn = 0.3;        // to it [rad], likewise
-constexpr double off_place = 0.1;         // where the machine comes to stand along the line
-constexpr double shift_step = 0.4;        // between the places that are looked at
-constexpr int most_along = 3;             // steps
-constexpr int most_beside = 9;            // likewise
-constexpr double step_along = 0.1;        // likewise along a line of stations [m]
-constexpr double most_shift = 1.5;        // along it
-constexpr double most_back_at_end = 0.8;  // of the first, which still reaches the far end
-constexpr double most_gap = 0.1;          // between what is dug from two places in succession
+constexpr double off_cut = 0.3;            // of the tracks from ground that was dug
+constexpr double deepest_rut = 0.15;       // more is dug
+constexpr double highest_soil = 0.2;       // under the tracks
+constexpr double spare_reach = 0.5;        // to the dump, since what is laid there grows
+constexpr double spare_turn = 0.3;         // to it [rad], likewise
+constexpr double off_place = 0.1;          // where the machine comes to stand along the line
+constexpr double shift_step = 0.4;         // between the places that are looked at
+constexpr double farthest_for_room = 1.3;  // to a place from which dump areas are not full [m]
+constexpr int most_along = 3;              // steps
+constexpr int most_beside = 9;             // likewise
+constexpr double step_along = 0.1;         // likewise along a line of stations [m]
+constexpr double most_shift = 1.5;         // along it
+constexpr double most_back_at_end = 0.8;   // of the first, which still reaches the far end
+constexpr double most_gap = 0.1;           // between what is dug from two places in succession
 
 double distance_to(const SitePolygon& polygon, const Vector2d& from) {
   double least = is_inside(polygon, from) ? 0.0 : (polygon.front() - from).norm();
@@ -96,7 +97,9 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
   std::stable_sort(shifts.begin(), shifts.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::optional<JobStation> meagre;
+  std::optional<JobStation> overflowing;
   for (const auto& [away, shift] : shifts) {
+    if (away > farthest_for_room && overflowing) break;
     JobStation moved = station;
     moved.along += shift.x();
     moved.beside += shift.y();
@@ -104,8 +107,10 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
     const BasePose base = base_at(frame, moved, on.now, on.settings.site.machine);
     if (dump_place(on.settings, on.map, on.now, base, spare_reach)) return moved;
     if (!meagre && dump_place(on.settings, on.map, on.now, base)) meagre = moved;
+    if (!overflowing && dump_place(on.settings, on.map, on.now, base, 0.0, true))
+      overflowing = moved;
   }
-  return meagre;
+  return meagre ? meagre : overflowing;
 }
 
 namespace {

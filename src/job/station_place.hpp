@@ -29,7 +29,8 @@ struct Standing {
 /// touched, and the tail swings clear of obstacles and of the truck.
 bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& station);
 
-/// The place nearest to that of a station where the machine can stand and its soil has a place.
+/// The place nearest to that of a station where the machine can stand and its soil has a place, in
+/// the dump areas if that is not far.
 std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& frame,
                                         const JobStation& station);
 

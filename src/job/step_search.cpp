@@ -310,7 +310,7 @@ class StepSearch {
     for (double start = line.far; start > line.near + start_step; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
       lay_out_layers(lane, start, attitudes, rules_in(lane));
-      if (task_.has_others_beside)
+      if (task_.has_others_beside || task_.bench)
         lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
       lay_out_face(lane, start);
     }

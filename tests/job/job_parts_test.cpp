@@ -118,7 +118,7 @@ TEST(JobStations, LanesCoverTheWidth) {
       for (const double lane : station.lanes) {
         right = std::min(right, lane - half);
         left = std::max(left, lane + half);
-        EXPECT_LE(std::abs(lane - station.beside), station.is_wide ? 1.0 : 0.34);
+        EXPECT_LE(std::abs(lane - station.beside), station.is_wide ? 1.6 : 0.34);
       }
     }
     EXPECT_NEAR(right, frame.right, 0.05) << width;
@@ -126,19 +126,47 @@ TEST(JobStations, LanesCoverTheWidth) {
   }
 }
 
-TEST(JobStations, AWideDesignIsWorkedFromFewPlaces) {
-  const HandMadeJob narrow(10.0, 1.2), wide(10.0, 3.6);
+TEST(JobStations, AWideDesignIsDugFromTheMiddleAndShapedFromItsSides) {
+  const HandMadeJob narrow(10.0, 1.2), wide(10.0, 3.6), wider(10.0, 5.0);
   const auto rows = stations_of(narrow.frame(), narrow.settings).size();
   const auto stations = stations_of(wide.frame(), wide.settings);
-  EXPECT_LE(stations.size(), 2 * rows);
-  EXPECT_GT(stations.size(), rows);
-  for (const JobStation& each : stations) EXPECT_TRUE(each.is_wide);
+  EXPECT_LE(stations.size(), 3 * rows);
+  ASSERT_EQ(stations.size() % 3, 0U);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    EXPECT_TRUE(stations[i].is_wide);
+    EXPECT_FALSE(stations[i].has_others_beside);
+    EXPECT_EQ(stations[i].leaves_passes, i % 3 == 0) << i;
+    EXPECT_EQ(stations[i].is_again, i % 3 != 0) << i;
+  }
+  EXPECT_EQ(stations[1].lanes.front(), stations[0].lanes.front());
+  EXPECT_EQ(stations[2].lanes.back(), stations[0].lanes.back());
+  EXPECT_EQ(stations[1].lanes.size() + stations[2].lanes.size(), stations[0].lanes.size());
+  const auto beside = stations_of(wider.frame(), wider.settings);
+  EXPECT_GT(beside.size(), stations.size());
+  EXPECT_TRUE(beside.front().has_others_beside);
+  EXPECT_FALSE(stations_beyond(wider.frame(), wider.settings).back().leaves_passes);
+}
+
+TEST(JobStations, NoLaneRunsAlongAWallTooSteepToCount) {
+  HandMadeJob job;
+  DesignWords words;
+  words.length = 10.0;
+  words.floor_width = 3.6;
+  words.depth = 1.2;
+  for (const double batter : {0.5, 1.0}) {  // 63 and 45 degrees
+    words.batter = batter;
+    job.settings.surface = design_of_words(words, job.ground.bank);
+    const JobFrame frame = job.frame();
+    const double half = batter < 0.6 ? 1.8 : 1.8 + 1.2 * batter;
+    EXPECT_NEAR(frame.left, half, 0.08) << batter;
+    EXPECT_NEAR(frame.right, -half, 0.08) << batter;
+  }
 }
 
 TEST(JobStations, AFanOfPlanesReachesLanesThatAreTooFarAside) {
   const HandMadeJob job(10.0, 3.6);
   const Machine& machine = job.settings.site.machine;
-  JobStation station = stations_of(job.frame(), job.settings).front();
+  JobStation station = stations_of(job.frame(), job.settings)[1];  // beside the right wall
   const auto straight =
       work_lines(job.frame(), station, machine, {station.along, station.beside}, false);
   EXPECT_EQ(straight.size(), station.lanes.size());
@@ -156,7 +184,7 @@ TEST(JobStations, AFanOfPlanesReachesLanesThatAreTooFarAside) {
   }
   EXPECT_NEAR(std::tan(least), 2.0 / straight.front().far, 0.01);
   EXPECT_GT(most, least + 0.2);
-  EXPECT_TRUE(work_lines(job.frame(), station, machine, at, true).empty());
+  EXPECT_EQ(work_lines(job.frame(), station, machine, at, true).size(), fan.size());
 }
 
 struct StandingJob : HandMadeJob {
@@ -767,6 +795,94 @@ TEST(DumpPlace, OfAnAreaThatIsTooSmallTheLeastRunsOut) {
   // Nor into the cut.
   job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(2.0, 0.6, 5.0, 1.3)}};
   EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
+}
+
+/// A small place for soil, and a heap on it that leaves no room.
+struct FullArea : HandMadeJob {
+  explicit FullArea(double depth) {
+    settings.design.dump_areas = {{DumpArea::Kind::heap, box(2.0, 2.6, 5.0, 5.6)}};
+    DesignWords words;
+    words.length = 10.0;
+    words.floor_width = 1.0;
+    words.depth = depth;
+    settings.surface = design_of_words(words, ground.bank);
+    of_job = map();
+    dug = ground;
+    for_each_cell(of_job.target.z, [&](Cell at) {
+      const double target = of_job.target.z(at.row, at.col);
+      if (!std::isnan(target)) dug.bank.z(at.row, at.col) = target;
+    });
+    for (int i = 0; i < 40; ++i) heap_soil(dug, settings.site.soil, 50.0, {3.5, 4.1}, 0.43);
+  }
+  JobMap of_job;
+  Terrain dug;
+  BasePose base = {3.0, 0.0, 0.0, 0.0};
+};
+
+TEST(DumpPlace, WhatFullAreasDoNotHoldIsLaidAroundThemAndTold) {
+  const FullArea job(0.5);
+  const auto place = dump_place(job.settings, job.of_job, job.dug, job.base, 0.0, true);
+  ASSERT_TRUE(place);
+  EXPECT_GT(place->outside, 0.5);
+  const auto warnings = dump_warnings(*place);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings.front().code, WarningCode::dump_areas_full);
+  EXPECT_FALSE(warnings.front().ends_trust);
+  EXPECT_GT(std::abs(place->place.y()), 0.5 + 0.6) << "not in the cut";
+  const auto first = dump_place(job.settings, job.of_job, job.ground, job.base);
+  ASSERT_TRUE(first);
+  EXPECT_TRUE(dump_warnings(*first).empty());
+}
+
+TEST(DumpPlace, SoilIsLaidShortOfAreasOutOfReachOnlyIfItMay) {
+  HandMadeJob job;
+  job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(2.0, 7.6, 5.0, 7.9)}};
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
+  const auto place = dump_place(job.settings, job.map(), job.ground, base, 0.0, true);
+  ASSERT_TRUE(place);
+  EXPECT_GT(place->place.y(), 7.6 - 4.1);
+  EXPECT_EQ(dump_warnings(*place).size(), 1U);
+}
+
+TEST(DumpPlace, AHeapBesideACutIsTheSameHoweverDeepItIs) {
+  const FullArea shallow(0.3), deep(2.0);
+  const auto beside_shallow =
+      dump_place(shallow.settings, shallow.of_job, shallow.dug, shallow.base, 0.0, true);
+  const auto beside_deep = dump_place(deep.settings, deep.of_job, deep.dug, deep.base, 0.0, true);
+  ASSERT_TRUE(beside_shallow && beside_deep);
+  EXPECT_LT((beside_shallow->place - beside_deep->place).norm(), 1e-9);
+}
+
+TEST(DumpPlace, AHeapThatIsNotKnownAsLooseStillTakesUpRoom) {
+  FullArea job(0.5);
+  const auto place = dump_place(job.settings, job.of_job, job.dug, job.base, 0.0, true);
+  job.dug.bank.z += job.dug.loose;
+  job.dug.loose.setZero();
+  const auto same = dump_place(job.settings, job.of_job, job.dug, job.base, 0.0, true);
+  ASSERT_TRUE(place && same);
+  EXPECT_LT((place->place - same->place).norm(), 1e-9);
+}
+
+TEST(LaneView, TheNoiseOfAHeapThatComesToRestTouchesNothing) {
+  HandMadeJob job;
+  job.settings.design.keep_out = {{"manhole", box(4.0, 1.0, 5.0, 1.8), {}}};
+  const LaneView view(job.ground, job.map(), dig_line({0.0, 0.0, 0.0, 0.0}),
+                      {-2.0, -2.0, 12.0, 2.0}, job.settings.site.machine.bucket.width_outside);
+  TerrainPatch patch;
+  const Terrain& before = view.ground().terrain();
+  patch.bank = before.bank.z;
+  patch.loose = before.loose;
+  for_each_cell(patch.loose, [&](Cell at) {
+    patch.loose(at.row, at.col) += (at.row + at.col) % 2 == 0 ? 0.01 : -0.01;
+  });
+  const ShapeChange noise = view.change(patch, {});
+  EXPECT_LT(noise.touched, 2e-4);
+  EXPECT_LT(noise.spilled, 2e-4);
+  patch.loose += 0.011;
+  const ShapeChange fallen = view.change(patch, {});
+  EXPECT_NEAR(fallen.touched, 0.011 * 0.8, 1e-3);
+  EXPECT_GT(fallen.spilled, 0.05);
 }
 
 TEST(LaneView, NothingIsCutBelowABench) {
