@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include <excavplan/base/error.hpp>
 #include <excavplan/design/cut_and_fill.hpp>
 #include <excavplan/design/design_file.hpp>
 #include <excavplan/design/job_design.hpp>
@@ -21,10 +22,14 @@ void say(Said& said, const std::string& name, const Measured& volume) {
 std::string read_any_design(const std::string& path) {
   static const HeightMap ground = flat_ground({-2.0, -4.0, 20.0, 8.0}, 0.25);
   const DesignSurface design = read_design(path);
-  const CutAndFill volumes = cut_and_fill(design, ground);
   Said said;
-  say(said, "cut", volumes.cut);
-  say(said, "fill", volumes.fill);
+  try {
+    const CutAndFill volumes = cut_and_fill(design, ground);
+    say(said, "cut", volumes.cut);
+    say(said, "fill", volumes.fill);
+  } catch (const Error& error) {  // names the design
+    throw Error(error.kind(), path + ": " + error.what());
+  }
   return said.add("name", design.name).text();
 }
 
