@@ -74,8 +74,8 @@ class DualForm {
   Eigen::MatrixXd factor_;           ///< L, lower: L L^T is the covariance of the readings
   Eigen::MatrixXd gains_;            ///< V = L^-1 G, rows x digs
   Eigen::MatrixXd triangle_;         ///< T, lower, digs x digs: T^T T = V^T V
-  Eigen::MatrixXd state_gains_;      ///< U = L^-1 H, rows x states
-  Eigen::VectorXd innovations_;      ///< L^-1 (values - prior means)
+  Eigen::MatrixXd state_gains_ = Eigen::MatrixXd(0, 3);  ///< U = L^-1 H, rows x states
+  Eigen::VectorXd innovations_;                          ///< L^-1 (values - prior means)
 };
 
 }  // namespace excavplan

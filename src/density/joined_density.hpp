@@ -14,8 +14,9 @@ namespace excavplan {
 /// Two densities of the same ground and their covariance.
 struct TwoDensities {
   Eigen::Vector2d percent;
-  Eigen::Matrix2d covariance;           ///< [points^2]
-  Eigen::Matrix2d by_measurement = {};  ///< the part of it that another dig would draw anew
+  Eigen::Matrix2d covariance;  ///< [points^2]
+  /// The part of it that another dig would draw anew.
+  Eigen::Matrix2d by_measurement = Eigen::Matrix2d::Zero();
 };
 
 /// Their mean of least variance: for normal errors, the maximum of the product of both.

@@ -77,20 +77,22 @@ class Groups {
   int code_ = 0;
 };
 
+const Vector3d none = Vector3d::Zero();
+
 /// The groups of an entity that this reader knows.
 struct Entity {
   std::string kind;
   std::uint64_t line = 0;
   std::string layer = "0";
-  std::string name;                      // 2
-  std::array<Vector3d, 4> places = {};   // 10 .. 33
-  std::array<bool, 12> is_told = {};     // of their coordinates
-  std::array<int, 4> whole = {};         // 70 .. 73
-  int fourth = 0;                        // 74
-  Vector3d scale = {1.0, 1.0, 1.0};      // 41 .. 43
-  Eigen::Vector2d spacing = {0.0, 0.0};  // 44, 45
-  double turn = 0.0;                     // 50 [degrees]
-  Vector3d normal = {0.0, 0.0, 1.0};     // 210 .. 230
+  std::string name;                                           // 2
+  std::array<Vector3d, 4> places = {none, none, none, none};  // 10 .. 33
+  std::array<bool, 12> is_told = {};                          // of their coordinates
+  std::array<int, 4> whole = {};                              // 70 .. 73
+  int fourth = 0;                                             // 74
+  Vector3d scale = {1.0, 1.0, 1.0};                           // 41 .. 43
+  Eigen::Vector2d spacing = {0.0, 0.0};                       // 44, 45
+  double turn = 0.0;                                          // 50 [degrees]
+  Vector3d normal = {0.0, 0.0, 1.0};                          // 210 .. 230
 
   void take(const Groups& groups) {
     const int code = groups.code();

@@ -136,7 +136,8 @@ Interpolation interpolation(const DigObjective& objective, const PlannedDig& bel
 ///
 /// Every entry is searched. Then, once up and once down each slope, an entry is searched again
 /// whose neighbour has a dig of another kind, from that dig, or which is worse than its neighbours
-/// let expect, from theirs. Then what is looked up midway is dug.
+/// let expect, from theirs; then so from slope to slope, where the kind differs. Then what is
+/// looked up midway is dug.
 class Build {
  public:
   Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
@@ -153,8 +154,11 @@ class Build {
         }
       }
     }
-    if (std::holds_alternative<AnchoredSearch>(options.search.method)) improve_rows();
     const std::size_t row = grid.densities_percent.size();
+    if (std::holds_alternative<AnchoredSearch>(options.search.method)) {
+      improve_along(1, row);
+      improve_along(row, grid.slopes.size());
+    }
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       measure(i, {1, row, &LibraryPlace::density_percent, &Entry::to_next_density});
       measure(i, {row, grid.slopes.size(), &LibraryPlace::slope, &Entry::to_next_slope});
@@ -264,18 +268,21 @@ class Build {
     return true;
   }
 
-  void improve_rows() {
-    const std::size_t row = job_.grid.densities_percent.size();
+  /// Once up and once down the lines of so many entries, from one to the next by this step.
+  void improve_along(std::size_t step, std::size_t count) {
+    const auto has_below = [=](std::size_t i) { return i / step % count > 0; };
+    const auto has_above = [=](std::size_t i) { return i / step % count + 1 < count; };
+    const bool is_row = step == 1;  // others are of one density, where nothing is interpolated
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      if (i % row > 0) improve(i, i - 1, i % row + 1 < row ? i + 1 : i - 1);
+      if (has_below(i)) improve(i, i - step, is_row && has_above(i) ? i + step : i - step);
     }
     for (std::size_t i = entries_.size(); i-- > 0;) {
-      if (i % row + 1 < row) improve(i, i + 1, i % row > 0 ? i - 1 : i + 1);
+      if (has_above(i)) improve(i, i + step, is_row && has_below(i) ? i - step : i + step);
     }
   }
 
   /// @param next   the neighbour whose dig may be of a better kind
-  /// @param other  the neighbour on the other side; `next` again if there is none
+  /// @param other  the neighbour on the other side; `next` again if there is none, or no matter
   void improve(std::size_t own, std::size_t next, std::size_t other) {
     Entry& entry = *entries_[own];
     const Entry& near = *entries_[next];

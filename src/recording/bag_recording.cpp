@@ -124,7 +124,7 @@ class BagRecording : public ChunkedContainer {
 
   void require_version() const;
   bool read_index();
-  void read_records(std::uint64_t start, std::uint32_t connections, std::uint32_t chunks);
+  void read_records(std::uint64_t start, const Fields& bag);
   void take_connection(const Fields& fields, ByteReader content, const ByteReader& place);
   void read_chunk_info(ByteReader& records, std::uint64_t end);
   void bound_chunks(std::uint64_t end);
@@ -158,7 +158,7 @@ bool BagRecording::read_index() {
   const std::uint64_t index = fields.number("index_pos", 8);
   is_cut_off_ = index == 0 || index >= file_.size();
   if (is_cut_off_) return false;
-  read_records(index, fields.u32("conn_count"), fields.u32("chunk_count"));
+  read_records(index, fields);
   return true;
 }
 
@@ -173,8 +173,10 @@ Bytes BagRecording::header_at(std::uint64_t offset) const {
   return file_.read(offset + 4, length, "header of a record");
 }
 
-void BagRecording::read_records(std::uint64_t start, std::uint32_t connections,
-                                std::uint32_t chunks) {
+/// @param bag the header that says how many records the index has
+void BagRecording::read_records(std::uint64_t start, const Fields& bag) {
+  const std::uint32_t connections = bag.u32("conn_count");
+  const std::uint32_t chunks = bag.u32("chunk_count");
   if (file_.size() - start > most_index_bytes) {
     file_.fail(magic.size(), "an index at byte " + std::to_string(start),
                "one of at most " + std::to_string(most_index_bytes) + " bytes in the " +

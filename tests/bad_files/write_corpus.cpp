@@ -7,6 +7,7 @@
 #include "bad_files/bad_file.hpp"
 #include "base/json.hpp"
 #include "base/random.hpp"
+#include "design/design_files.hpp"
 #include "fuzz/file_readers.hpp"
 
 // write-corpus FOLDER: a folder for each fuzz target with what fuzzing starts from: the small valid
@@ -27,6 +28,30 @@ std::string drawn(std::uint64_t seed) {
   return bytes;
 }
 
+/// In each format whose content tells it; the rasters are those of other targets.
+std::vector<std::string> designs() {
+  using namespace excavplan::test;
+  const PlainMesh mesh = battered_trench({0.0, 0.0});
+  return {land_xml(mesh, file_units[0]),
+          dxf(dxf_faces(mesh), file_units[0].dxf),
+          dxf(dxf_polyface(mesh), file_units[0].dxf),
+          ply_text(mesh),
+          ply_binary(mesh),
+          obj(mesh),
+          stl_text(mesh),
+          stl_binary(mesh).replace(0, 5, "solid")};
+}
+
+constexpr const char* plain_site = R"({"format": "plain-site", "version": 1, "id": "T",
+ "tolerance_m": 0.05, "design": {"kind": "trench", "length_m": 15, "floor_width_m": 1, "depth_m": 0.5,
+ "origin_m": [1, 2], "heading_rad": 0.5}, "start_pose": {"x": 1, "y": 2, "heading_rad": 3},
+ "keep_out": [{"kind": "cable", "polygon": [[0, 0], [1, 0], [1, 1]], "depth_m": 0.8}],
+ "obstacles": [{"kind": "pole", "polygon": [[0, 0], [1, 0], [1, 1]], "height_m": 6}],
+ "dump_areas": [{"kind": "heap", "polygon": [[0, 0], [1, 0], [1, 1]]}],
+ "truck": {"bed_polygon": [[0, 0], [1, 0], [1, 1]], "bed_height_m": 2.4, "target_kg": 4000},
+ "sensor": {"noise_sd_at_1m_m": 0.001, "pattern_sd_at_1m_m": 0.002, "range_power": 2}}
+)";
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -35,17 +60,20 @@ int main(int argc, char** argv) {
     std::cerr << "usage: write-corpus FOLDER\n";
     return 2;
   }
+  const std::string folder = argv[1];
   for (const test::FileReader& reader : test::file_readers()) {
-    const std::string folder = std::string(argv[1]) + "/" + reader.name;
     int number = 0;
     for (std::string bytes : test::valid_files(reader.name)) {
       if (reader.sealed) bytes.resize(bytes.size() - sealed("").size());
-      write(folder, ++number, bytes);
+      write(folder + "/" + reader.name, ++number, bytes);
     }
   }
+  write(folder + "/plain_site", 1, plain_site);
+  int number = 0;
+  for (const std::string& bytes : designs()) write(folder + "/design", ++number, bytes);
   for (const char* target : {"dig", "volume_change"}) {
     for (int seed = 1; seed <= 8; ++seed) {
-      write(std::string(argv[1]) + "/" + target, seed, drawn(static_cast<std::uint64_t>(seed)));
+      write(folder + "/" + target, seed, drawn(static_cast<std::uint64_t>(seed)));
     }
   }
 }

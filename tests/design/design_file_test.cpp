@@ -218,6 +218,24 @@ TEST(Dxf, BlocksAreTurnedScaledRepeatedAndNested) {
   EXPECT_NEAR(all.y_max, 110.0, 1e-9);
 }
 
+// Flat drawings leave z out.
+TEST(Dxf, ACoordinateThatIsNotToldIsNought) {
+  const auto flat = [](const string& place) { return place.substr(0, place.find(" 30\n") - 1); };
+  string inside = group(0, "POLYLINE") + group(8, "0") + group(70, "64");
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 5), {1, 0, 5}, {0, 1, 5}}) {
+    inside += group(0, "VERTEX") + dxf_place(p, 0) + group(70, "192");
+  }
+  inside += group(0, "VERTEX") + flat(dxf_place({1, 1, 0}, 0)) + group(70, "192");
+  inside += group(0, "VERTEX") + group(70, "128") + group(71, "2") + group(72, "4") +
+            group(73, "3") + group(0, "SEQEND");
+  const string insert = group(0, "INSERT") + group(2, "b") + flat(dxf_place({100, 0, 0}, 0));
+  const DesignFile file("dxf", dxf(insert, 6, block("b", {0, 0, 0}, inside)));
+  const DesignSurface design = read_design(file.path());
+  const auto& tin = std::get<Tin>(design.shape);
+  EXPECT_EQ(tin.origin, Eigen::Vector3d(101, 0, 5));
+  EXPECT_EQ(tin.points.at(1), Eigen::Vector3d(0, 1, -5));
+}
+
 TEST(Dxf, LayersAreChosenAndOfABlockItIsThatOfItsPlace) {
   const string faces = dxf_faces(unit_square);
   const string insert =

@@ -125,6 +125,8 @@ def run_page(reader, options):
         if language != "sh":
             if words:
                 reader.save(words[0], content)
+            elif language == "text":
+                failures.append(f"{place}: is right behind no block of commands")
             continue
         failures += [f"{place}: unknown word '{word}'" for word in words if not known(word)]
         if left_out(words, options) or lacks(words):

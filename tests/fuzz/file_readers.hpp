@@ -30,8 +30,10 @@ std::vector<FileReader> image_readers();  ///< none without excavplan::survey
 std::vector<FileReader> planning_readers();
 std::vector<FileReader> recording_readers();
 std::vector<FileReader> tool_readers();  ///< of what the tools take besides
+/// For the fuzz targets alone: tests/design has their bad files.
+std::vector<FileReader> design_readers();
 
-/// All of them.
+/// All but those of designs.
 std::vector<FileReader> file_readers();
 /// @throws std::out_of_range if there is none of that name
 FileReader reader_of(const std::string& name);

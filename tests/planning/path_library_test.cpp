@@ -580,6 +580,24 @@ TEST_F(LibraryBuilding, TakesTheNeighboursKindOfDigWhereItIsBetter) {
   EXPECT_EQ(build(cells, options), to_json(library));
 }
 
+// In dense soil on rising ground a search may end at a dig that lifts nearly nothing.
+TEST_F(LibraryBuilding, TakesTheKindOfDigOfTheNextSlopeWhereItIsBetter) {
+  LibraryBuildOptions options;
+  options.search.objective = DigObjective::Goal::energy;
+  AnchoredSearch method;
+  method.inherited_evaluations = 80;
+  options.search.method = method;
+  const std::vector<double> slopes = {0.043633231299858244,
+                                      0.08726646259971649};  // 2.5 and 5 degrees
+  const PathLibrary library = build_path_libraries(grid({95}, slopes), options).libraries[0];
+  ASSERT_EQ(library.entries.size(), 2U);
+  const HeightMapSimulator simulator(machine_, soil_, 95.0);
+  const Terrain ground = sloped_planning_ground(machine_, slopes[1], library.cell_size);
+  const PlannedDig& other = library.entries[0].dig;
+  const auto dug = evaluate_dig(machine_, simulator, ground, other.parameters, other.start_x);
+  EXPECT_GT(library.entries[1].dig.efficiency(), 0.9 * std::get<PlannedDig>(dug).efficiency());
+}
+
 TEST(PathLibrary, TakesTheDigOfOneEntryWhereTheOthersStall) {
   PathLibrary library = sloped_library();
   library.entries[0].to_next_density.between = Between::upper;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -87,14 +88,18 @@ TEST_F(Tools, InspectCloudGivesTheVolumeOfALoneHeap) {
     }
   }
   const std::string heap = folder.write("heap.xyz", rows);
-  const json result =
-      answer("inspect-cloud", {heap, "--volume", "3.8,-1.2,6.2,-1.2,6.2,1.2,3.8,1.2"});
+  const Words words = {heap, "--volume", "3.8,-1.2,6.2,-1.2,6.2,1.2,3.8,1.2"};
+  const json result = answer("inspect-cloud", words);
   const double truth = 3.14159265 * 0.8 * 0.8 * 0.5 / 3.0;
   EXPECT_NEAR(number(result, "/volume/above_m3"), truth, 0.005);
   EXPECT_LT(number(result, "/volume/below_m3"), 0.005);
   EXPECT_GT(number(result, "/volume/above_sd_m3"), 0.0);
   EXPECT_GT(number(result, "/volume/below_sd_m3"), 0.0);
   EXPECT_NEAR(number(result, "/volume/area_m2"), 5.76, 1e-9);
+  const std::regex said(
+      R"(m\^2: [0-9.]+ ± [0-9.]+ m\^3 above its rim, [0-9.]+ ± [0-9.]+ m\^3 below)");
+  const std::string text = run_program("inspect-cloud", words).out;
+  EXPECT_TRUE(std::regex_search(text, said)) << text;
 }
 
 TEST_F(BadInput, VolumesOverWhatIsNoPolygonAreRefused) {

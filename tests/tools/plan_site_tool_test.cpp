@@ -184,6 +184,7 @@ TEST_F(PlanSite, AnEstimateOfWordsOfASiteAndOfAJob) {
   const ProgramResult strict =
       run_program("plan-site", {"estimate", "--trench", "15x1x3", "--strict"});
   EXPECT_EQ(strict.code, 4);
+  EXPECT_TRUE(contains(strict.out, "density 50 ± 25 %")) << strict.out;
   EXPECT_TRUE(contains(strict.out, "NOT TRUSTWORTHY: its mean depth is 3.00 m")) << strict.out;
 }
 

@@ -46,7 +46,7 @@ void add_volume(const Scan& scan, const std::vector<Eigen::Vector2d>& polygon, O
                             {"below_sd_m3", found.below.sd},
                             {"area_m2", found.area}};
   const auto text = [](const Measured& volume) {
-    return readable(volume.value, volume.sd) + " +- " + readable(volume.sd, 2) + " m^3";
+    return readable(volume.value, volume.sd) + " m^3";
   };
   outcome.lines.push_back("  volume in the polygon of " + readable(found.area) + " m^2: " +
                           text(found.above) + " above its rim, " + text(found.below) + " below");

@@ -62,7 +62,7 @@ std::vector<std::string> estimate_lines(const JobEstimate& estimate, const JobOu
   const double volume = job.shape.volume.value;
   std::vector<std::string> lines = {
       "design       " + readable(volume, 3) + " m3 of bank, density " +
-          readable(job.density.percent, 3) + " +- " + readable(job.density.sd_percent, 2) + " %",
+          readable(job.density.percent, job.density.sd_percent) + " %",
       "loose        " + figure_text(estimate.swollen, "m3", 1.0),
       "mass         " + figure_text(estimate.mass, "t", 1e-3),
       "digs         " + figure_text(estimate.digs, "", 1.0, true),
