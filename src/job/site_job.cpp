@@ -171,6 +171,7 @@ struct SiteJob::State {
     return now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
   }
   BasePose base_of(const JobStation& station) const;
+  bool stands_well() const;
   bool wants_passes(const BasePose& base) const;
   bool is_dug_out(const BasePose& base) const;
   template <typename Visit>
@@ -470,6 +471,13 @@ double SiteJob::State::allowance_of_passes() const {
                     most_allowance * tolerance);
 }
 
+/// Its own digs may have brought the edge too near.
+bool SiteJob::State::stands_well() const {
+  const JobFrame line = frame_at(stations[record.station]);
+  const Eigen::Vector2d at = line.of({record.base.x, record.base.y});
+  return can_stand_now({settings, map, first, ground.expected()}, line, {at.x(), at.y()});
+}
+
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) {
     const auto place = next_place(progress());
@@ -479,6 +487,7 @@ JobStep SiteJob::State::decide() {
   if (stations[record.station].is_lookout()) return leave();
   if (ground.unseen_digs() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   const bool is_wide = stations[record.station].is_wide;
+  if (is_wide && !record.carried && !stands_well()) return leave();
   if (record.fruitless_digs < (is_wide ? most_fruitless_wide : most_fruitless_digs)) {
     if (auto step = dig_step(false)) return *std::move(step);
   }

@@ -3,6 +3,7 @@
 #include "job/station_place.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -17,11 +18,12 @@ namespace {
 using Eigen::Vector2d;
 
 // Numbers of our own choice [m].
-constexpr double off_cut = 0.3;            // of the tracks from ground that was dug
-constexpr double deepest_rut = 0.15;       // more is dug
-constexpr double highest_soil = 0.2;       // under the tracks
-constexpr double spare_reach = 0.5;        // to the dump, since what is laid there grows
-constexpr double spare_turn = 0.3;         // to it [rad], likewise
+constexpr double off_cut = 0.3;                    // of the tracks from ground that was dug
+constexpr double deepest_rut = 0.15;               // more is dug
+constexpr std::array off_drops = {0.5, 0.8, 1.1};  // from ground that is deeper than that
+constexpr double highest_soil = 0.2;               // under the tracks
+constexpr double spare_reach = 0.5;                // to the dump, since what is laid there grows
+constexpr double spare_turn = 0.3;                 // to it [rad], likewise
 constexpr double off_place = 0.1;          // where the machine comes to stand along the line
 constexpr double shift_step = 0.4;         // between the places that are looked at
 constexpr double farthest_for_room = 1.3;  // to a place from which dump areas are not full [m]
@@ -74,10 +76,14 @@ bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& 
   if (!is_tail_clear(on.settings, frame.place(station.along, station.beside))) return false;
   bool free = true;
   const auto& machine = on.settings.site.machine;
-  for_each_under({frame, station, machine, off_cut}, on.map.target, [&](const auto& cell) {
-    if (!cell) return;
-    free &= !(surface_of(on.first, *cell) - surface_of(on.now, *cell) > deepest_rut);
-  });
+  const auto keep_off = [&](double around, double deepest) {
+    for_each_under({frame, station, machine, around}, on.map.target, [&](const auto& cell) {
+      if (!cell) return;
+      free &= !(surface_of(on.first, *cell) - surface_of(on.now, *cell) > deepest);
+    });
+  };
+  keep_off(off_cut, deepest_rut);
+  for (const double away : off_drops) keep_off(away, away);
   for_each_under({frame, station, machine}, on.map.target, [&](const auto& cell) {
     free &= cell && !on.map.untouched(cell->row, cell->col) &&
             !(surface_of(on.now, *cell) - surface_of(on.first, *cell) > highest_soil);

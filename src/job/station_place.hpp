@@ -26,7 +26,8 @@ struct Standing {
 };
 
 /// Whether the tracks stand on ground that nothing was dug from or laid on, off what must not be
-/// touched, and the tail swings clear of obstacles and of the truck.
+/// touched and no nearer to an edge than it is deep, and the tail swings clear of obstacles and of
+/// the truck.
 bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& station);
 
 /// The place nearest to that of a station where the machine can stand and its soil has a place, in
