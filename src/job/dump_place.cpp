@@ -216,19 +216,20 @@ bool is_near_area(const JobMap& map, const Vector2d& place, double near) {
 
 /// How far beside the areas soil may be laid.
 struct Beside {
-  double share;  ///< of a bucket
-  double away;   ///< [m]
+  double share;        ///< of a bucket
+  double away;         ///< [m]
+  double spare_reach;  ///< DumpRules
 };
 
 /// Where the least of a bucket comes to lie beside the areas.
 std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap& map,
-                                       const Terrain& ground, const BasePose& base, double spare,
+                                       const Terrain& ground, const BasePose& base,
                                        const Beside& most) {
   const Machine& machine = settings.site.machine;
   const HeapLayer layer(settings, map, ground);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, most.spare_reach, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (std::abs(turn) >= least || !at || std::isnan(ground.bank.z(at->row, at->col))) return;
     const bool is_cut = !std::isnan(map.target.z(at->row, at->col));
@@ -278,8 +279,9 @@ bool turns_clear(const JobSettings& settings, const BasePose& base, double swing
 }
 
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
-                                    const Terrain& ground, const BasePose& base, double spare,
-                                    bool may_overflow) {
+                                    const Terrain& ground, const BasePose& base,
+                                    const DumpRules& rules) {
+  const double spare = rules.spare_reach;
   if (settings.design.truck) return in_truck(settings, ground, base, spare);
   const Machine& machine = settings.site.machine;
   const double repose = std::tan(settings.site.soil.angle_of_repose);
@@ -300,9 +302,9 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
     best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
   });
   if (best) return best;
-  best = least_outside(settings, map, ground, base, spare, {most_outside, area_run});
-  if (best || !may_overflow) return best;
-  return least_outside(settings, map, ground, base, spare, {1.0, farthest_off});
+  best = least_outside(settings, map, ground, base, {most_outside, area_run, spare});
+  if (best || !rules.may_overflow) return best;
+  return least_outside(settings, map, ground, base, {1.0, farthest_off, spare});
 }
 
 }  // namespace excavplan

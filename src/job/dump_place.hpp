@@ -30,15 +30,18 @@ struct DumpPlace {
 /// A dump_areas_full, if most of a bucket comes to lie beside them.
 std::vector<Warning> dump_warnings(const DumpPlace& dump);
 
+struct DumpRules {
+  double spare_reach = 0.0;   ///< that is not used [m]
+  bool may_overflow = false;  ///< where the areas are full, onto the ground around them
+};
+
 /// The place of the dump areas, or the truck, with the least swing from where the machine stands,
 /// where a bucket of soil stays within the area; where none does, that from which least runs out.
 /// Only places to which the machine turns_clear() count.
-/// @param spare  of the reach that is not used [m]
-/// @param may_overflow  where the areas are full, onto the ground around them
 /// @return nothing if none is within reach
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
-                                    const Terrain& ground, const BasePose& base, double spare = 0.0,
-                                    bool may_overflow = false);
+                                    const Terrain& ground, const BasePose& base,
+                                    const DumpRules& rules = {});
 
 /// Of the tail from what stands on a site, where the machine turns; ours [m].
 inline constexpr double off_tail = 0.3;

@@ -294,7 +294,7 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
 }
 
 std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
-  const auto dump = dump_place(settings, map, ground.expected(), record.base, 0.0, true);
+  const auto dump = dump_place(settings, map, ground.expected(), record.base, {0.0, true});
   if (!dump) return std::nullopt;
   BasePose straight = record.base;
   straight.heading = frame_at(stations[record.station]).heading;
@@ -376,7 +376,7 @@ bool SiteJob::State::may_keep(double more) const {
 /// What passes left in the bucket is dumped, and its last ones are seen.
 std::optional<JobStep> SiteJob::State::dump_step() {
   if (!record.carried) return std::nullopt;
-  const auto dump = dump_place(settings, map, ground.expected(), record.base, 0.0, true);
+  const auto dump = dump_place(settings, map, ground.expected(), record.base, {0.0, true});
   if (!dump) return std::nullopt;
   JobStep step =
       step_of(JobAction::scan, "to dump what passes left in the bucket, and to see them");
@@ -524,7 +524,7 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
 std::optional<JobStation> SiteJob::State::place_to_dump_from() const {
   const JobStation& station = stations[record.station];
   if (!record.has_arrived || !station.is_wide) return std::nullopt;
-  if (dump_place(settings, map, ground.expected(), record.base, 0.0, true)) return std::nullopt;
+  if (dump_place(settings, map, ground.expected(), record.base, {0.0, true})) return std::nullopt;
   const JobFrame line = frame_at(station);
   auto place = nearest_place({settings, map, first, ground.expected()}, line, station);
   if (!place) return place;

@@ -111,9 +111,9 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
     moved.beside += shift.y();
     if (!can_stand_now(on, frame, moved)) continue;
     const BasePose base = base_at(frame, moved, on.now, on.settings.site.machine);
-    if (dump_place(on.settings, on.map, on.now, base, spare_reach)) return moved;
+    if (dump_place(on.settings, on.map, on.now, base, {spare_reach})) return moved;
     if (!meagre && dump_place(on.settings, on.map, on.now, base)) meagre = moved;
-    if (!overflowing && dump_place(on.settings, on.map, on.now, base, 0.0, true))
+    if (!overflowing && dump_place(on.settings, on.map, on.now, base, {0.0, true}))
       overflowing = moved;
   }
   return meagre ? meagre : overflowing;

@@ -239,6 +239,23 @@ TEST(StationPlace, IsNotOnGroundThatWasDug) {
   EXPECT_FALSE(job.nearest());
 }
 
+TEST(StationPlace, IsAsFarFromAnEdgeAsThatIsDeep) {
+  for (const double deep : {0.4, 0.9, 1.2}) {
+    StandingJob job;
+    const double edge = job.at(job.station).x() + job.settings.site.machine.track_front + 0.7;
+    for_each_cell(job.ground.bank.z, [&](Cell cell) {
+      if (job.ground.bank.x(cell.col) > edge) job.ground.bank.z(cell.row, cell.col) -= deep;
+    });
+    const auto place = job.nearest();
+    ASSERT_TRUE(place) << deep;
+    const double away = edge - job.at(*place).x() - job.settings.site.machine.track_front;
+    EXPECT_GT(away, std::min(0.8, deep) - 0.16) << deep;
+    if (deep < 0.5) {
+      EXPECT_NEAR(away, 0.7, 1e-9) << "it need not move";
+    }
+  }
+}
+
 TEST(StationPlace, MovesToWhereTheTruckIsWithinReach) {
   StandingJob job;
   job.settings.design.dump_areas.clear();
@@ -821,7 +838,7 @@ struct FullArea : HandMadeJob {
 
 TEST(DumpPlace, WhatFullAreasDoNotHoldIsLaidAroundThemAndTold) {
   const FullArea job(0.5);
-  const auto place = dump_place(job.settings, job.of_job, job.dug, job.base, 0.0, true);
+  const auto place = dump_place(job.settings, job.of_job, job.dug, job.base, {0.0, true});
   ASSERT_TRUE(place);
   EXPECT_GT(place->outside, 0.5);
   const auto warnings = dump_warnings(*place);
@@ -839,7 +856,7 @@ TEST(DumpPlace, SoilIsLaidShortOfAreasOutOfReachOnlyIfItMay) {
   job.settings.design.dump_areas = {{DumpArea::Kind::windrow, box(2.0, 7.6, 5.0, 7.9)}};
   const BasePose base = {3.0, 0.0, 0.0, 0.0};
   EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, base));
-  const auto place = dump_place(job.settings, job.map(), job.ground, base, 0.0, true);
+  const auto place = dump_place(job.settings, job.map(), job.ground, base, {0.0, true});
   ASSERT_TRUE(place);
   EXPECT_GT(place->place.y(), 7.6 - 4.1);
   EXPECT_EQ(dump_warnings(*place).size(), 1U);
@@ -848,18 +865,18 @@ TEST(DumpPlace, SoilIsLaidShortOfAreasOutOfReachOnlyIfItMay) {
 TEST(DumpPlace, AHeapBesideACutIsTheSameHoweverDeepItIs) {
   const FullArea shallow(0.3), deep(2.0);
   const auto beside_shallow =
-      dump_place(shallow.settings, shallow.of_job, shallow.dug, shallow.base, 0.0, true);
-  const auto beside_deep = dump_place(deep.settings, deep.of_job, deep.dug, deep.base, 0.0, true);
+      dump_place(shallow.settings, shallow.of_job, shallow.dug, shallow.base, {0.0, true});
+  const auto beside_deep = dump_place(deep.settings, deep.of_job, deep.dug, deep.base, {0.0, true});
   ASSERT_TRUE(beside_shallow && beside_deep);
   EXPECT_LT((beside_shallow->place - beside_deep->place).norm(), 1e-9);
 }
 
 TEST(DumpPlace, AHeapThatIsNotKnownAsLooseStillTakesUpRoom) {
   FullArea job(0.5);
-  const auto place = dump_place(job.settings, job.of_job, job.dug, job.base, 0.0, true);
+  const auto place = dump_place(job.settings, job.of_job, job.dug, job.base, {0.0, true});
   job.dug.bank.z += job.dug.loose;
   job.dug.loose.setZero();
-  const auto same = dump_place(job.settings, job.of_job, job.dug, job.base, 0.0, true);
+  const auto same = dump_place(job.settings, job.of_job, job.dug, job.base, {0.0, true});
   ASSERT_TRUE(place && same);
   EXPECT_LT((place->place - same->place).norm(), 1e-9);
 }
