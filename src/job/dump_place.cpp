@@ -37,6 +37,8 @@ constexpr double farthest_run = 3.0;    // of soil from where it falls [m]
 constexpr double edge_step = 0.1;       // of an obstacle's outline [m]
 constexpr int halvings = 7;             // of the range in which the top of a heap lies
 
+bool is_cut(const JobMap& map, Cell at) { return !std::isnan(map.target.z(at.row, at.col)); }
+
 /// Height of the cone of a bucket of soil.
 double heap_height(const JobSettings& settings) {
   const double repose = std::tan(settings.site.soil.angle_of_repose);
@@ -57,8 +59,7 @@ bool fits(const JobMap& map, const Vector2d& place, double radius) {
       if (distance <= radius && (!at || !map.dump(at->row, at->col))) return false;
       if (!at) continue;
       if (distance <= radius + off_keep_out && map.untouched(at->row, at->col)) return false;
-      if (distance <= radius + edge_of_cut && !std::isnan(map.target.z(at->row, at->col)))
-        return false;
+      if (distance <= radius + edge_of_cut && is_cut(map, *at)) return false;
     }
   }
   return true;
@@ -164,8 +165,7 @@ class HeapLayer {
   /// Soil that runs does not know how deep it is behind the edge of the cut.
   double surface(Cell at) const {
     const double now = surface_of(ground_, at);
-    const bool is_cut = !std::isnan(map_.target.z(at.row, at.col));
-    return is_cut ? std::fmax(now, map_.before(at.row, at.col)) : now;
+    return is_cut(map_, at) ? std::fmax(now, map_.before(at.row, at.col)) : now;
   }
 
   double volume(const Vector2d& place, double top) const {
@@ -184,9 +184,8 @@ class HeapLayer {
       const auto reaches = [&](double margin) {
         return top - repose_ * std::max(0.0, away - margin) > surface(at);
       };
-      const bool is_cut = !std::isnan(map_.target.z(at.row, at.col));
       const bool is_untouched = map_.untouched(at.row, at.col);
-      if ((is_cut && reaches(edge_of_cut)) || (is_untouched && reaches(off_keep_out)))
+      if ((is_cut(map_, at) && reaches(edge_of_cut)) || (is_untouched && reaches(off_keep_out)))
         heap.is_allowed = false;
       const double height = std::max(0.0, top - repose_ * away - surface(at));
       all += height;
@@ -232,8 +231,7 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
   for_each_place(settings, base, most.spare_reach, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (std::abs(turn) >= least || !at || std::isnan(ground.bank.z(at->row, at->col))) return;
-    const bool is_cut = !std::isnan(map.target.z(at->row, at->col));
-    if (is_cut || !is_near_area(map, place, most.away)) return;
+    if (is_cut(map, *at) || !is_near_area(map, place, most.away)) return;
     const Heap heap = layer.lay(place);
     const double pin = heap.top + drop + machine.bucket_length;
     const double away = std::hypot(place.x() - base.x, place.y() - base.y);

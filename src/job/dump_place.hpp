@@ -30,6 +30,7 @@ struct DumpPlace {
 /// A dump_areas_full, if most of a bucket comes to lie beside them.
 std::vector<Warning> dump_warnings(const DumpPlace& dump);
 
+/// What a place for soil may be.
 struct DumpRules {
   double spare_reach = 0.0;   ///< that is not used [m]
   bool may_overflow = false;  ///< where the areas are full, onto the ground around them

@@ -131,8 +131,8 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
   const double slack = rules.slack;
   const double area = surface_.cell_size * surface_.cell_size;
   ShapeChange change;
-  double risen =
-      0.0;  // of what must not be touched; where a heap comes to rest, its noise does not
+  // What must not be touched: the noise of a heap that comes to rest adds up to nothing.
+  double risen = 0.0;
   for_each_cell(patch.bank, [&](Cell at) {
     const Cell cell = {at.row + patch.row, at.col + patch.col};
     const double before = surface_.z(cell.row, cell.col);

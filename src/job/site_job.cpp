@@ -97,15 +97,14 @@ struct SiteJob::State {
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
     }
     const JobStation last = stations.back();
-    std::vector<JobStation> near_end;
-    std::copy_if(stations.begin(), stations.end(), std::back_inserter(near_end),
-                 [&](const JobStation& each) { return each.along == last.along; });
-    stations.insert(stations.end(), beyond.begin(), beyond.end());
-    if (last.is_wide) {  // each end once more, when the other is dug
-      for (JobStation& each : near_end) each.is_again = true;
-      stations.insert(stations.end(), near_end.begin(), near_end.end());
-      stations.insert(stations.end(), beyond.begin(), beyond.end());
+    std::vector<JobStation> ends = beyond;
+    if (last.is_wide) {  // each once more, when the other is dug
+      std::copy_if(stations.begin(), stations.end(), std::back_inserter(ends),
+                   [&](const JobStation& each) { return each.along == last.along; });
+      for (JobStation& each : ends) each.is_again = true;
+      ends.insert(ends.end(), beyond.begin(), beyond.end());
     }
+    stations.insert(stations.end(), ends.begin(), ends.end());
     const JobStation lookout;
     stations.insert(stations.end(),
                     {lookout, lookout, lookout, lookout, last, lookout, lookout, lookout, lookout});
@@ -145,10 +144,12 @@ struct SiteJob::State {
   bool can_dig_from(const JobStation& station) const {
     const JobFrame line = frame_at(station);
     const Machine& machine = settings.site.machine;
-    const auto place = station.is_wide ? nearest_place({settings, map, first, first}, line, station)
-                                       : std::optional(station);
-    return place && (station.is_wide || can_stand(line, *place, machine, map)) &&
-           dump_place(settings, map, first, base_at(line, *place, first, machine));
+    std::optional<JobStation> place;
+    if (station.is_wide)
+      place = nearest_place({settings, map, first, first}, line, station);
+    else if (can_stand(line, station, machine, map))
+      place = station;
+    return place && dump_place(settings, map, first, base_at(line, *place, first, machine));
   }
 
   JobProgress progress() const {
