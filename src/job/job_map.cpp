@@ -199,6 +199,17 @@ JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned)
   return frame;
 }
 
+AcrossLine across_below(const JobMap& map, const JobFrame& frame, double height) {
+  Eigen::AlignedBox1d box;
+  for_each_cell(map.target.z, [&](Cell at) {
+    if (map.target.z(at.row, at.col) < height)
+      box.extend(frame.of({map.target.x(at.col), map.target.y(at.row)}).tail<1>());
+  });
+  const double half = 0.5 * map.target.cell_size;
+  if (box.isEmpty()) return {frame.right, frame.left};
+  return {box.min()(0) - half, box.max()(0) + half};
+}
+
 JobFrame reversed(const JobFrame& frame) {
   JobFrame back = frame;
   back.heading = wrapped(frame.heading + pi);

@@ -74,6 +74,13 @@ struct JobFrame {
 
 /// Along the heading in which the machine starts, or turned from it [rad]: it works backwards.
 JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned = 0.0);
+/// How far beside a line a part of the design reaches [m].
+struct AcrossLine {
+  double right;
+  double left;
+};
+/// Of the part that lies below a height of the site [m].
+AcrossLine across_below(const JobMap& map, const JobFrame& frame, double height);
 /// The same line from its other end.
 JobFrame reversed(const JobFrame& frame);
 

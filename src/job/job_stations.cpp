@@ -16,17 +16,18 @@ namespace {
 
 // Numbers of our own choice.
 constexpr double nearest_work = 1.15;  // before the tracks, so that the bucket has room to curl [m]
-constexpr double farthest_work = 0.78;  // of the reach of the front from its pin
-constexpr double end_wall = 0.67;       // of that reach to the far end: nearer the bucket opens too
-                                        // little for a steep cut
-constexpr double end_of_wide = 0.74;    // likewise of a wide design: its face leans back, and takes
-                                        // up what is within reach of a nearer place
-constexpr double overlap = 0.25;        // of what is dug from two places in succession [m]
-constexpr double side_margin = 0.04;    // to the sides of the design, as no machine is exact [m]
-constexpr double end_margin = 0.03;     // to the ends of the design, half a cell at least [m]
-constexpr double lane_overlap = 0.1;    // of two lanes [m]
-constexpr double beside_edge = 0.6;     // of tracks that stand beside the design [m]
-constexpr double batter_step = 0.1;     // of passes that leave a face in steps [m]
+constexpr double farthest_work = 0.78;     // of the reach of the front from its pin
+constexpr double farthest_of_wide = 0.86;  // likewise where two ends meet
+constexpr double end_wall = 0.67;     // of that reach to the far end: nearer the bucket opens too
+                                      // little for a steep cut
+constexpr double end_of_wide = 0.74;  // likewise of a wide design: its face leans back, and takes
+                                      // up what is within reach of a nearer place
+constexpr double overlap = 0.25;      // of what is dug from two places in succession [m]
+constexpr double side_margin = 0.04;  // to the sides of the design, as no machine is exact [m]
+constexpr double end_margin = 0.03;   // to the ends of the design, half a cell at least [m]
+constexpr double lane_overlap = 0.1;  // of two lanes [m]
+constexpr double beside_edge = 0.6;   // of tracks that stand beside the design [m]
+constexpr double batter_step = 0.1;   // of passes that leave a face in steps [m]
 constexpr std::size_t passes_of_lane = 3;  // that far apart are lanes for volume there
 constexpr double least_across = 0.1;       // share of the design, to cut it so
 constexpr double most_left = 0.5;          // of such faces, for another line of work
@@ -37,6 +38,7 @@ constexpr double widest_for_volume = 1.6;  // likewise of a wide design [m]
 constexpr double widest_at_wall = 1.0;     // likewise of its passes: a bucket that is yawed further
                                            // turns its back into the wall as it curls [m]
 constexpr double widest_straight = 1.1;    // of both, at most, where no machine is exact [m]
+constexpr double least_wider = 0.05;       // of a bench than the floor, to dig along its side [m]
 constexpr double least_of_benches = 2.0;   // between the outermost lanes [m]
 constexpr double off_wall = 0.05;          // of passes beside it [m]
 constexpr double fan_step = 0.1;           // between planes through the swing axis [rad]
@@ -158,7 +160,9 @@ double nearest_of(const Machine& machine) { return machine.track_front + nearest
 double at_reach(const Machine& machine, double share) {
   return machine.boom_pin.x() + share * machine.full_length();
 }
-double farthest_of(const Machine& machine) { return at_reach(machine, farthest_work); }
+double farthest_of(const Machine& machine, bool is_wide = false) {
+  return at_reach(machine, is_wide ? farthest_of_wide : farthest_work);
+}
 
 /// Along the line, from where all that is near is reached.
 double last_of(const JobFrame& frame, const Machine& machine) {
@@ -205,11 +209,11 @@ JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrai
   return best;
 }
 
-WorkRange work_range(const JobFrame& frame, const Machine& machine, double along) {
+WorkRange work_range(const JobFrame& frame, const Machine& machine, double along, bool is_wide) {
   const double end = frame.far - end_margin - along;
   WorkRange range;
   range.near = std::max(nearest_of(machine), frame.near + end_margin - along);
-  range.far = std::min(farthest_of(machine), end);
+  range.far = std::min(farthest_of(machine, is_wide), end);
   range.ends_at_wall = range.far == end && !frame.is_battered;
   return range;
 }
@@ -282,7 +286,7 @@ bool can_stand(const JobFrame& frame, const JobStation& station, const Machine& 
 std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& station,
                                  const Machine& machine, const Eigen::Vector2d& at,
                                  bool finishing) {
-  WorkRange range = work_range(frame, machine, at.x());
+  WorkRange range = work_range(frame, machine, at.x(), station.is_wide);
   const double shaped = station.shapes_to - at.x();
   range.ends_at_wall &= shaped >= range.far;
   if (finishing) range.far = std::min(range.far, shaped);
@@ -303,9 +307,22 @@ std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& statio
   for (int i = 0; i <= more; ++i) {
     const double turned = fan.min()(0) + (more > 0 ? widest * i / more : 0.0);
     const double near = range.near / std::cos(turned);
-    if (near < farthest_of(machine)) lines.push_back({turned, 0.0, near, farthest_of(machine)});
+    const double far = farthest_of(machine, station.is_wide);
+    if (near < far) lines.push_back({turned, 0.0, near, far});
   }
   return lines;
+}
+
+JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine& below,
+                    const Machine& machine) {
+  const double half = 0.5 * machine.bucket.width_outside + side_margin;
+  const double right = below.right + half, left = below.left - half;
+  std::vector<double>& lanes = station.lanes;
+  if (lanes.front() < frame.right + half + 1e-6 && right < lanes.front() - least_wider)
+    lanes.insert(lanes.begin(), right);
+  if (lanes.back() > frame.left - half - 1e-6 && left > lanes.back() + least_wider)
+    lanes.push_back(left);
+  return station;
 }
 
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

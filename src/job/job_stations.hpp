@@ -89,7 +89,8 @@ struct WorkRange {
   double far = 0.0;
   bool ends_at_wall = false;  ///< `far` is the end of a design that is not battered
 };
-WorkRange work_range(const JobFrame& frame, const Machine& machine, double along);
+WorkRange work_range(const JobFrame& frame, const Machine& machine, double along,
+                     bool is_wide = false);
 
 /// A vertical plane to dig in: to the left of the machine's view and beside the swing axis.
 struct WorkLine {
@@ -105,6 +106,10 @@ struct WorkLine {
 /// @param at  along the line of work and beside it [m]
 std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& station,
                                  const Machine& machine, const Eigen::Vector2d& at, bool finishing);
+
+/// With lanes along walls that lean back, over what of the design lies below a bench.
+JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine& below,
+                    const Machine& machine);
 
 /// A machine at a station, on the mean height of the ground under its tracks.
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

@@ -39,6 +39,7 @@ constexpr double least_allowance = -0.4;     // likewise
 constexpr double most_of_floor = 0.5;        // in tolerances: else passes did not come so far
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 8;               // along the floor from one station
+constexpr int most_passes_wide = 16;         // likewise of a wide design
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
@@ -162,6 +163,7 @@ struct SiteJob::State {
   std::optional<JobStep> best_step(bool finishing);
   void lay_aside(const JobStep& dig);
   std::vector<double> benches_below() const;
+  std::vector<WorkLine> lines_on(double bench, const BasePose& straight) const;
   std::optional<StepDig> best_dig_of(StepTask& task, const std::vector<double>& benches);
   StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
   JobStep move_step(const JobStation& station);
@@ -182,6 +184,9 @@ struct SiteJob::State {
   void foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const;
   bool check_motion(JobStep& step);
   bool may_keep(double more) const;
+  int most_passes_here() const {
+    return stations[record.station].is_wide ? most_passes_wide : most_passes;
+  }
   std::optional<JobStep> dump_step();
   JobStep step_of(JobAction what, const std::string& reason = {});
   void end_step(const StepReport& report);
@@ -265,14 +270,23 @@ std::vector<double> SiteJob::State::benches_below() const {
   return benches;
 }
 
+std::vector<WorkLine> SiteJob::State::lines_on(double bench, const BasePose& straight) const {
+  const Machine& machine = settings.site.machine;
+  const JobFrame line = frame_at(stations[record.station]);
+  const JobStation station = on_bench(here(), line, across_below(map, line, bench), machine);
+  return work_lines(line, station, machine, line.of({straight.x, straight.y}), false);
+}
+
 /// From the bench that was dug last, down to the design. What lies deeper can come with what only a
 /// bite would take off a bench.
 std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
                                                    const std::vector<double>& benches) {
   const int count = static_cast<int>(benches.size());
   const bool may_bite = std::exchange(task.may_bite, false);
+  const auto over_floor = task.lines;
   for (int bench = std::min(record.bench, count); bench < count; ++bench) {
     task.bench = benches[static_cast<std::size_t>(bench)];
+    task.lines = lines_on(*task.bench, task.base);
     record.bench = bench + 1;
     auto dig = best_dig(task);
     if (!dig) continue;
@@ -280,6 +294,7 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
     return dig;
   }
   task.bench.reset();
+  task.lines = over_floor;
   task.may_bite = may_bite;
   return best_dig(task);
 }
@@ -371,7 +386,7 @@ bool SiteJob::State::check_motion(JobStep& step) {
 bool SiteJob::State::may_keep(double more) const {
   const double held = (record.carried ? record.carried->volume : 0.0) + more;
   return !settings.design.truck && held <= most_carried * heaped_capacity(settings.site.machine) &&
-         record.passes_here + 1 < most_passes;
+         record.passes_here + 1 < most_passes_here();
 }
 
 /// What passes left in the bucket is dumped, and its last ones are seen.
@@ -405,7 +420,7 @@ void SiteJob::State::for_each_in_reach(const BasePose& base, Visit visit) const 
   const JobStation station = here();
   const JobFrame line = frame_at(station);
   const Eigen::Vector2d at = line.of({base.x, base.y});
-  const WorkRange range = work_range(line, settings.site.machine, at.x());
+  const WorkRange range = work_range(line, settings.site.machine, at.x(), station.is_wide);
   const double half = 0.5 * settings.site.machine.bucket.width_outside;
   for_each_cell(map.counts, [&](Cell cell) {
     if (!map.counts(cell.row, cell.col)) return;
@@ -495,7 +510,7 @@ JobStep SiteJob::State::decide() {
   const std::size_t passes = ground.unseen_digs(JobAction::finish);
   if (ground.unseen_digs() > passes || passes >= most_unseen_passes)
     return step_of(JobAction::scan, "to see what is left");
-  if (!here().leaves_passes && record.passes_here < most_passes &&
+  if (!here().leaves_passes && record.passes_here < most_passes_here() &&
       record.fruitless < most_fruitless && wants_passes(record.base) &&
       (!is_wide || is_dug_out(record.base))) {
     if (auto step = dig_step(true)) return *std::move(step);

@@ -40,6 +40,7 @@ const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
                                           0.22, 0.32, 0.45};  // of the layer of a drag [m]
 constexpr double lowest = -100.0;                             // of a drag along the floor [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
+constexpr double height_doubt = 0.01;  // of the edge over the ground, at which no dig may stall [m]
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
 constexpr double shortest_pass = 0.6;  // [m]
@@ -601,7 +602,7 @@ class StepSearch {
     const auto in_hard = dig_of_path(machine_, aim == Aim::wall ? firm_ : hard_, ground,
                                      candidate.path, cycle_of(candidate));
     const auto* hard = std::get_if<PlannedDig>(&in_hard);
-    step.may_stall = hard == nullptr;
+    step.may_stall = hard == nullptr || (aim != Aim::wall && stalls_higher(candidate));
     step.worth = (step.may_stall ? risky : 1.0) * gain / cost(step.dig);
     if (hard != nullptr) {
       step.signs.energy_share =
@@ -609,6 +610,14 @@ class StepSearch {
           std::log((aim == Aim::wall ? wall_factor() : task_.hard_factor) / task_.strength_factor);
     }
     return step;
+  }
+
+  /// Whether it stalls where the edge runs lower than planned, or the ground is higher than seen.
+  bool stalls_higher(const Candidate& candidate) const {
+    Terrain higher = lanes_[candidate.lane].view.ground().terrain();
+    higher.bank.z += height_doubt;
+    const auto dig = dig_of_path(machine_, simulator_, higher, candidate.path, {});
+    return !std::holds_alternative<PlannedDig>(dig);
   }
 
   /// On the strength, at which no dig at a wall may stall: a flat one would leave a ramp, and a

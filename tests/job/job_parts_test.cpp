@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <excavplan/job/job_motion.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/trial/job_score.hpp>
@@ -25,6 +26,7 @@
 #include "job/station_place.hpp"
 #include "job/step_search.hpp"
 #include "job/trench_job.hpp"
+#include "planning/simulated_dig.hpp"
 #include "support/errors.hpp"
 
 /// @file
@@ -161,6 +163,45 @@ TEST(JobStations, NoLaneRunsAlongAWallTooSteepToCount) {
     EXPECT_NEAR(frame.left, half, 0.08) << batter;
     EXPECT_NEAR(frame.right, -half, 0.08) << batter;
   }
+}
+
+TEST(JobStations, ABenchIsAsWideAsTheDesignIsThere) {
+  HandMadeJob job;
+  DesignWords words;
+  words.length = 10.0;
+  words.floor_width = 3.6;
+  words.depth = 1.2;
+  words.batter = 0.5;
+  job.settings.surface = design_of_words(words, job.ground.bank);
+  const JobMap map = job.map();
+  const JobFrame frame = job.frame();
+  const Machine& machine = job.settings.site.machine;
+  const auto stations = stations_of(frame, job.settings);
+  const JobStation& middle = stations[0];
+  const JobStation& right = stations[1];
+  const auto widest = [&](const JobStation& station, double height) {
+    return on_bench(station, frame, across_below(map, frame, height), machine).lanes;
+  };
+  const double half = 0.5 * machine.bucket.width_outside;
+  for (const double height : {-0.4, -0.8}) {
+    const double side = 1.8 + 0.5 * (1.2 + height);  // of the design there
+    const auto lanes = widest(middle, height);
+    ASSERT_EQ(lanes.size(), middle.lanes.size() + 2);
+    EXPECT_NEAR(lanes.front() - half, -side, 0.08);
+    EXPECT_NEAR(lanes.back() + half, side, 0.08);
+    EXPECT_EQ(widest(right, height).size(), right.lanes.size() + 1);
+    EXPECT_NEAR(widest(right, height).front(), lanes.front(), 1e-9);
+  }
+  EXPECT_EQ(widest(middle, -1.19).size(), middle.lanes.size());  // no wider than the floor
+}
+
+TEST(JobStations, AWideDesignIsDugFartherAhead) {
+  const HandMadeJob job(20.0, 3.6);
+  const Machine& machine = job.settings.site.machine;
+  const double narrow = work_range(job.frame(), machine, 0.0, false).far;
+  const double wide = work_range(job.frame(), machine, 0.0, true).far;
+  EXPECT_GT(wide, narrow + 0.4);
+  EXPECT_LT(wide, machine.boom_pin.x() + machine.full_length());
 }
 
 TEST(JobStations, AFanOfPlanesReachesLanesThatAreTooFarAside) {
@@ -763,6 +804,36 @@ TEST(StepSearch, BitesWhereNoFlatCutIsStrongEnough) {
   EXPECT_GT(hard->signs.stalls_at, 4.0);
   EXPECT_LT(hard->signs.stalls_at, 20.0);
   EXPECT_FALSE(dig_in_soil(job, 4.0, false));  // where passes are to take what is left
+}
+
+TEST(StepSearch, APassThatIsCountedOnDoesNotStallInGroundThatIsHigher) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  constexpr double left = 0.06;  // over the floor [m]
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    if (!std::isnan(target)) job.ground.bank.z(at.row, at.col) = target + left;
+  });
+  const Machine& machine = job.settings.site.machine;
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  StepTask task{job.settings, map, job.ground, base, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  task.lines = {{0.0, -0.11, 2.95, 6.0}};
+  task.finishing = true;
+  int counted_on = 0;
+  for (double strength = 1.0; strength < 8.0; strength *= 1.3) {
+    task.strength_factor = strength;
+    task.hard_factor = 1.05 * strength;
+    const auto dig = best_dig(task);
+    if (!dig || dig->may_stall) continue;
+    ++counted_on;
+    Terrain higher = undisturbed(flat_ground({0.0, -2.0, 9.0, 2.0}, 0.05));
+    higher.bank.z += left - 0.5 + 0.01;
+    const HeightMapSimulator simulator(machine, with_strength(job.settings.site.soil, strength),
+                                       task.density_percent);
+    const auto dug = dig_of_path(machine, simulator, higher, dig->path);
+    EXPECT_TRUE(std::holds_alternative<PlannedDig>(dug)) << strength;
+  }
+  EXPECT_GT(counted_on, 2);
 }
 
 TEST(DumpPlace, ATruckIsLoadedFromAboveItsBed) {
