@@ -56,6 +56,7 @@ constexpr double high_share = 1.0;           // of the tolerance: higher cells c
 constexpr double most_off = 0.042;           // share of cells that may stay so, or too low
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
+constexpr double surely_in_shape = 0.9;      // share of what is allowed, of a wide design
 constexpr double well_seen = 0.992;          // of it, so that no more is looked for
 constexpr int most_blocked = 4;  // digs from one place whose way is blocked, before it is left
 constexpr int most_softer = 4;   // deviations of the strength below its mean that are tried
@@ -170,8 +171,13 @@ struct SiteJob::State {
   JobStep leave();
   std::optional<JobStation> place_to_dump_from() const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
-  bool has_shape(const JobProgress& now) const {
-    return now.p95 <= settings.design.tolerance && now.beyond_twice <= most_beyond_twice;
+  bool has_shape(const JobProgress& now, double share = 1.0) const {
+    return now.p95 <= share * settings.design.tolerance &&
+           now.beyond_twice <= share * most_beyond_twice;
+  }
+  /// So that passes from other places are not worth their moves.
+  bool is_shaped(const JobProgress& now) const {
+    return has_shape(now, stations.front().is_wide ? surely_in_shape : 1.0);
   }
   BasePose base_of(const JobStation& station) const;
   bool stands_well() const;
@@ -523,7 +529,7 @@ JobStep SiteJob::State::decide() {
 /// Where the present station is; nothing if there is nothing to do.
 std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) const {
   const JobStation& station = stations[record.station];
-  if ((station.is_beyond || station.is_again) && has_shape(now)) return std::nullopt;
+  if ((station.is_beyond || station.is_again) && is_shaped(now)) return std::nullopt;
   if (station.is_lookout()) {
     if (now.seen >= well_seen) return std::nullopt;
     return best_lookout({frame, settings, map, ground.expected(), ground.seen(),
@@ -557,7 +563,8 @@ JobStep SiteJob::State::leave() {
   const bool looked_in_vain = stations[record.station].is_lookout() &&
                               now.seen - record.seen_before_look < least_newly_seen;
   record.seen_before_look = now.seen;
-  while (!(now.is_finished && now.seen >= well_seen) && record.station + 1 < stations.size()) {
+  const bool needs_no_more = now.is_finished && is_shaped(now) && now.seen >= well_seen;
+  while (!needs_no_more && record.station + 1 < stations.size()) {
     ++record.station;
     if (looked_in_vain && stations[record.station].is_lookout()) continue;
     const auto place = next_place(now);
