@@ -80,6 +80,24 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
   return event;
 }
 
+/// What no such step can have led to is of another one.
+void require_report(const JobStep& step, const StepReport& report) {
+  const std::string of = " of step " + std::to_string(step.id) + ", " + name(step.what);
+  const double lifted = report.payload_mass.value_or(0.0);
+  const double work = report.joint_work.value_or(0.0);
+  require(std::isfinite(lifted), "payload mass" + of, lifted, "finite");
+  require(std::isfinite(work), "work of the joints" + of, work, "finite");
+  if (report.base) {
+    const BasePose& base = *report.base;
+    for (const double number : {base.x, base.y, base.z, base.heading})
+      require(std::isfinite(number), "base" + of, number, "finite");
+  }
+  if (step.digs()) return;
+  require(lifted == 0.0, "payload mass" + of, lifted, "0 or left out, as nothing is dug in it");
+  require(!report.stalled, "step " + std::to_string(step.id) + " is a " + name(step.what) +
+                               " and cannot have stalled: only a dig can");
+}
+
 }  // namespace
 
 struct SiteJob::State {
@@ -763,6 +781,7 @@ void SiteJob::look(const Scan& scan, double time) {
   unasked.id = 0;
   state_->save_changed(before, unasked, report);
 }
+  require_report(*present, report);
 
 void SiteJob::undo() {
   state_->record = earlier_record(state_->folder);

@@ -156,6 +156,42 @@ TEST(SiteJob, AFolderHoldsOneJob) {
   EXPECT_NE(error_of([&] { of.resume(); }).find("start is not told"), std::string::npos);
 }
 
+TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
+  BegunJob begun(0);
+  const auto refusal = [&](const auto& change) {
+    StepReport report;
+    change(report);
+    const std::string before = begun.of.record();
+    const std::string text = error_of([&] { begun.job.done(begun.job.next().id, report); });
+    EXPECT_EQ(begun.of.record(), before) << text;
+    return text;
+  };
+  const double nan = std::nan("");
+  ASSERT_EQ(begun.job.next().what, JobAction::move);
+  EXPECT_EQ(refusal([](StepReport& each) { each.payload_mass = 310.0; }),
+            "payload mass of step 1, move is 310, must be 0 or left out, as nothing is dug in it");
+  EXPECT_EQ(refusal([](StepReport& each) { each.stalled = true; }),
+            "step 1 is a move and cannot have stalled: only a dig can");
+  EXPECT_EQ(refusal([&](StepReport& each) {
+              each.base = BasePose{0.0, nan};
+            }),
+            "base of step 1, move is nan, must be finite");
+  begun.of.make_step(begun.job);
+  ASSERT_EQ(begun.job.next().what, JobAction::dig);
+  EXPECT_EQ(refusal([&](StepReport& each) { each.payload_mass = nan; }),
+            "payload mass of step 2, dig is nan, must be finite");
+  EXPECT_EQ(refusal([&](StepReport& each) { each.joint_work = nan; }),
+            "work of the joints of step 2, dig is nan, must be finite");
+}
+
+TEST(SiteJob, APayloadOfNothingMayBeReportedOfAMove) {
+  BegunJob begun(0);
+  StepReport report;
+  report.payload_mass = 0.0;
+  begun.job.done(begun.job.next().id, report);
+  EXPECT_EQ(begun.job.next().what, JobAction::dig);
+}
+
 /// Share of the floor of the usual trench, less its rim, that lies within so far of -0.4 m.
 double share_within(const Terrain& ground, double tolerance) {
   const HeightMap surface = ground.surface();
