@@ -239,6 +239,43 @@ TEST(SiteJob, WithExactScansATrenchIsDugToItsDesign) {
   EXPECT_GT(share_within(of.truth.ground(), 0.06), 0.93);
 }
 
+/// Reports the present step, a move, so far off where it was to go, along the trench and aside.
+void arrive_off(SiteJob& job, double along, double aside = 0.0) {
+  const JobStep move = job.next();
+  ASSERT_EQ(move.what, JobAction::move);
+  StepReport report;
+  report.base = move.base;
+  report.base->x += along;
+  report.base->y += aside;
+  job.done(move.id, report);
+}
+
+TEST(SiteJob, AMachineOffItsPlaceDigsFromWhereItStandsIfItCan) {
+  BegunJob begun(0);
+  const BasePose place = begun.job.next().base;
+  arrive_off(begun.job, 0.0, 0.83);
+  const JobStep step = begun.job.next();
+  EXPECT_EQ(step.what, JobAction::dig);
+  EXPECT_DOUBLE_EQ(step.base.y, place.y + 0.83);
+}
+
+TEST(SiteJob, AMachineThatCanDigNothingOffItsPlaceGoesThereOnceMore) {
+  BegunJob begun(0);
+  const BasePose place = begun.job.next().base;
+  arrive_off(begun.job, 3.0);
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  EXPECT_EQ(begun.job.next().what, JobAction::move);
+  EXPECT_NEAR(begun.job.next().base.x, place.x, 1e-9);
+  arrive_off(begun.job, 0.0);
+  EXPECT_EQ(begun.job.next().what, JobAction::dig);
+  begun.job.undo();
+  arrive_off(begun.job, 3.0);
+  const JobStep step = begun.job.next();
+  EXPECT_TRUE(step.what != JobAction::move || std::abs(step.base.x - place.x) > 1.0)
+      << name(step.what) << ' ' << step.base.x;
+}
+
 TEST(SiteJob, AKeepOutIsNotCut) {
   ShortTrench site;
   const double depth = 0.15;
