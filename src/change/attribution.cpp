@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include <excavplan/change/blocks.hpp>
+
 #include "change/change_zones.hpp"
 
 namespace excavplan {
@@ -149,8 +151,9 @@ void set_kinds(std::vector<Area>& areas, const Attribution& attribution,
 double likelihood_of_bulking(double k) {
   constexpr double least = 1.02, least_sd = 0.04;
   constexpr double most = 1.65, most_sd = 0.08;
-  constexpr double most_in_blocks = 2.5, blocks = 0.3;
+  constexpr double blocks = 0.3;
   constexpr double never = 1e-3;
+  const double most_in_blocks = most / (1.0 - BlockOptions{}.packed_voids);
   const auto above = [&](double limit) {
     return std::exp(-0.5 * std::pow((k - limit) / most_sd, 2));
   };

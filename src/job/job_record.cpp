@@ -241,6 +241,7 @@ Json record_json(const JobRecord& record) {
   for_each_number(record, [&](const char* key, double value) { json[key] = value; });
   json["learning"] = learning_json(record.learning);
   json["rests_at_rad"] = joints_json(record.rests_at);
+  if (record.off_place > 0.0) json["off_place_m"] = record.off_place;
   if (record.carried) json["carried"] = carried_json(*record.carried);
   if (record.present) json["present"] = step_json(*record.present);
   if (record.planned) json["planned"] = planned_json(*record.planned);
@@ -279,6 +280,7 @@ JobRecord read_record(const std::string& path) {
                   [&](const char* key, double& value) { value = object.number(key, -1e12, 1e12); });
   record.learning = read_learning(object.numbers("learning", 16));
   record.rests_at = read_joints(object, "rests_at_rad");
+  if (object.has("off_place_m")) record.off_place = object.number("off_place_m", 0, 1e12);
   if (object.has("carried")) record.carried = read_carried(object.object("carried"));
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));

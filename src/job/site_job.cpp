@@ -82,6 +82,24 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
   return event;
 }
 
+/// What no such step can have led to is of another one.
+void require_report(const JobStep& step, const StepReport& report) {
+  const std::string of = " of step " + std::to_string(step.id) + ", " + name(step.what);
+  const double lifted = report.payload_mass.value_or(0.0);
+  const double work = report.joint_work.value_or(0.0);
+  require(std::isfinite(lifted), "payload mass" + of, lifted, "finite");
+  require(std::isfinite(work), "work of the joints" + of, work, "finite");
+  if (report.base) {
+    const BasePose& base = *report.base;
+    for (const double number : {base.x, base.y, base.z, base.heading})
+      require(std::isfinite(number), "base" + of, number, "finite");
+  }
+  if (step.digs()) return;
+  require(lifted == 0.0, "payload mass" + of, lifted, "0 or left out, as nothing is dug in it");
+  require(!report.stalled, "step " + std::to_string(step.id) + " is a " + name(step.what) +
+                               " and cannot have stalled: only a dig can");
+}
+
 }  // namespace
 
 struct SiteJob::State {
@@ -169,7 +187,9 @@ struct SiteJob::State {
   StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
   JobStep move_step(const JobStation& station);
   JobStep leave();
+  JobStep go_to(const JobStation& place);
   std::optional<JobStation> place_to_dump_from() const;
+  std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
   bool has_shape(const JobProgress& now, double share = 1.0) const {
     return now.p95 <= share * settings.design.tolerance &&
@@ -555,11 +575,33 @@ std::optional<JobStation> SiteJob::State::place_to_dump_from() const {
   return off.norm() > same_place ? place : std::nullopt;
 }
 
+/// The present station once more, if the machine stands off it and leaves it undone.
+std::optional<JobStation> SiteJob::State::missed_place(const JobProgress& now) const {
+  const JobStation& station = stations[record.station];
+  if (station.is_lookout() || !(record.off_place > same_place)) return std::nullopt;
+  const auto place = next_place(now);
+  if (!place) return place;
+  const BasePose base = base_of(*place);
+  const bool is_undone = station.leaves_passes ? !is_dug_out(base) : wants_passes(base);
+  return is_undone ? place : std::nullopt;
+}
+
+JobStep SiteJob::State::go_to(const JobStation& place) {
+  record.passes_here = 0;
+  record.bench = 0;
+  record.fruitless = 0;
+  record.fruitless_digs = 0;
+  record.barren.clear();
+  record.wants_scan = place.is_lookout();
+  return move_step(place);
+}
+
 /// To the next place from which there is something to do, or the end.
 JobStep SiteJob::State::leave() {
   if (const auto place = place_to_dump_from()) return move_step(*place);
   const JobProgress now = progress();
   learn_floor();
+  if (const auto place = missed_place(now)) return go_to(*place);
   const bool looked_in_vain = stations[record.station].is_lookout() &&
                               now.seen - record.seen_before_look < least_newly_seen;
   record.seen_before_look = now.seen;
@@ -569,13 +611,8 @@ JobStep SiteJob::State::leave() {
     if (looked_in_vain && stations[record.station].is_lookout()) continue;
     const auto place = next_place(now);
     if (!place) continue;
-    record.passes_here = 0;
-    record.bench = 0;
-    record.fruitless = 0;
-    record.fruitless_digs = 0;
-    record.barren.clear();
-    record.wants_scan = place->is_lookout();
-    return move_step(*place);
+    record.off_place = 0.0;
+    return go_to(*place);
   }
   if (record.carried) return step_of(JobAction::stop, "the soil in the bucket has no place");
   if (now.is_finished) return step_of(JobAction::stop, "finished");
@@ -667,6 +704,8 @@ void SiteJob::State::end_step(const StepReport& report) {
   }
   if (step.what == JobAction::move) {
     record.base = report.base.value_or(step.base);
+    const double off = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
+    record.off_place = record.off_place > 0.0 ? 0.0 : off;
     record.has_arrived = true;
     record.learning.move();
     ++record.progress.moves;
@@ -764,6 +803,7 @@ JobStep SiteJob::next() {
 void SiteJob::done(long long step, const StepReport& report) {
   const std::optional<JobStep>& present = state_->record.present;
   if (!present || present->id != step || present->what == JobAction::stop) return;
+  require_report(*present, report);
   const JobRecord before = state_->record;
   state_->or_as_before(before, [&] { state_->end_step(report); });
   state_->save_changed(before, *before.present, report);

@@ -156,6 +156,42 @@ TEST(SiteJob, AFolderHoldsOneJob) {
   EXPECT_NE(error_of([&] { of.resume(); }).find("start is not told"), std::string::npos);
 }
 
+TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
+  BegunJob begun(0);
+  const auto refusal = [&](const auto& change) {
+    StepReport report;
+    change(report);
+    const std::string before = begun.of.record();
+    const std::string text = error_of([&] { begun.job.done(begun.job.next().id, report); });
+    EXPECT_EQ(begun.of.record(), before) << text;
+    return text;
+  };
+  const double nan = std::nan("");
+  ASSERT_EQ(begun.job.next().what, JobAction::move);
+  EXPECT_EQ(refusal([](StepReport& each) { each.payload_mass = 310.0; }),
+            "payload mass of step 1, move is 310, must be 0 or left out, as nothing is dug in it");
+  EXPECT_EQ(refusal([](StepReport& each) { each.stalled = true; }),
+            "step 1 is a move and cannot have stalled: only a dig can");
+  EXPECT_EQ(refusal([&](StepReport& each) {
+              each.base = BasePose{0.0, nan};
+            }),
+            "base of step 1, move is nan, must be finite");
+  begun.of.make_step(begun.job);
+  ASSERT_EQ(begun.job.next().what, JobAction::dig);
+  EXPECT_EQ(refusal([&](StepReport& each) { each.payload_mass = nan; }),
+            "payload mass of step 2, dig is nan, must be finite");
+  EXPECT_EQ(refusal([&](StepReport& each) { each.joint_work = nan; }),
+            "work of the joints of step 2, dig is nan, must be finite");
+}
+
+TEST(SiteJob, APayloadOfNothingMayBeReportedOfAMove) {
+  BegunJob begun(0);
+  StepReport report;
+  report.payload_mass = 0.0;
+  begun.job.done(begun.job.next().id, report);
+  EXPECT_EQ(begun.job.next().what, JobAction::dig);
+}
+
 /// Share of the floor of the usual trench, less its rim, that lies within so far of -0.4 m.
 double share_within(const Terrain& ground, double tolerance) {
   const HeightMap surface = ground.surface();
@@ -201,6 +237,43 @@ TEST(SiteJob, WithExactScansATrenchIsDugToItsDesign) {
   // with the smallest change of the order of digs.
   EXPECT_GT(share_within(of.truth.ground(), 0.03), 0.88);
   EXPECT_GT(share_within(of.truth.ground(), 0.06), 0.93);
+}
+
+/// Reports the present step, a move, so far off where it was to go, along the trench and aside.
+void arrive_off(SiteJob& job, double along, double aside = 0.0) {
+  const JobStep move = job.next();
+  ASSERT_EQ(move.what, JobAction::move);
+  StepReport report;
+  report.base = move.base;
+  report.base->x += along;
+  report.base->y += aside;
+  job.done(move.id, report);
+}
+
+TEST(SiteJob, AMachineOffItsPlaceDigsFromWhereItStandsIfItCan) {
+  BegunJob begun(0);
+  const BasePose place = begun.job.next().base;
+  arrive_off(begun.job, 0.0, 0.83);
+  const JobStep step = begun.job.next();
+  EXPECT_EQ(step.what, JobAction::dig);
+  EXPECT_DOUBLE_EQ(step.base.y, place.y + 0.83);
+}
+
+TEST(SiteJob, AMachineThatCanDigNothingOffItsPlaceGoesThereOnceMore) {
+  BegunJob begun(0);
+  const BasePose place = begun.job.next().base;
+  arrive_off(begun.job, 3.0);
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  EXPECT_EQ(begun.job.next().what, JobAction::move);
+  EXPECT_NEAR(begun.job.next().base.x, place.x, 1e-9);
+  arrive_off(begun.job, 0.0);
+  EXPECT_EQ(begun.job.next().what, JobAction::dig);
+  begun.job.undo();
+  arrive_off(begun.job, 3.0);
+  const JobStep step = begun.job.next();
+  EXPECT_TRUE(step.what != JobAction::move || std::abs(step.base.x - place.x) > 1.0)
+      << name(step.what) << ' ' << step.base.x;
 }
 
 TEST(SiteJob, AKeepOutIsNotCut) {

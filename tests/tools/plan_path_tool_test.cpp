@@ -486,6 +486,16 @@ TEST_F(Tools, SearchWarnsOfADamagedShippedLibraryAndGoesOn) {
   EXPECT_EQ(sand.at("warnings"), json::array());
 }
 
+TEST_F(Tools, ASearchHasTheGenerationsOfItsHelpHoweverManyDigsItMayMake) {
+  EXPECT_TRUE(contains(run_program("plan-path", {"--help"}).out, "0: 20, with --method"));
+  const Words many = {"--density", "40", "--search", "--evaluations", "100000"};
+  json usual = answer("plan-path", many);
+  const json twenty = answer("plan-path", many + Words{"--generations", "20"});
+  EXPECT_EQ(usual.at("stopped_by"), "generations");
+  usual["wall_time_s"] = twenty.at("wall_time_s");
+  EXPECT_EQ(usual, twenty);
+}
+
 TEST_F(Tools, InterruptedSearchReportsItAndResumes) {
   const std::string plot = folder.file("best_so_far.svg");
   const Words words = {"--density",     "40", "--search",     "--evaluations",         "500",

@@ -29,9 +29,11 @@ DigBounds bounds_of(const SearchMethodInputs& inputs) {
   return bounds;
 }
 
+MemeticSearch usual_search() { return std::get<MemeticSearch>(budget_search().method); }
+
 std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchMethodInputs& inputs) {
   if (inputs.method == "default") {
-    auto memetic = std::get<MemeticSearch>(budget_search().method);
+    MemeticSearch memetic = usual_search();
     if (inputs.generations != 0) memetic.generations = inputs.generations;
     return memetic;
   }
@@ -68,8 +70,8 @@ void declare_search_method(Arguments& arguments, SearchMethodInputs& inputs) {
                      "the default method has none, --method paper has"},
                     [&] { declare_genetic(arguments, inputs.genetic); });
   arguments.option("generations", inputs.generations,
-                   "generations of the search, 0 for as many as --evaluations allows, or with "
-                   "--method paper " +
+                   "generations of the search, if --evaluations does not end it before; 0: " +
+                       std::to_string(usual_search().generations) + ", with --method paper " +
                        std::to_string(GeneticAlgorithm{}.generations));
 }
 

@@ -40,6 +40,8 @@ class SiteJob : public JobPlanner {
   SiteJob& operator=(SiteJob&&) noexcept;  ///< the same
 
   JobStep next() override;
+  /// @throws Error (bad_input) if a number of the report is not finite, or a payload or a stall is
+  /// of a step that does not dig; as Site::update(). Nothing is changed then.
   void done(long long step, const StepReport& report) override;
   /// Takes in a scan that no step asked for. A step that is not done yet is then planned anew with
   /// a new number, but for a move.
