@@ -39,7 +39,7 @@ constexpr double least_allowance = -0.4;     // likewise
 constexpr double most_of_floor = 0.5;        // in tolerances: else passes did not come so far
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 8;               // along the floor from one station
-constexpr int most_passes_wide = 16;         // likewise of a wide design
+constexpr int most_passes_of_shape = 16;     // likewise of a wide design, or one with faces
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
@@ -211,7 +211,8 @@ struct SiteJob::State {
   bool check_motion(JobStep& step);
   bool may_keep(double more) const;
   int most_passes_here() const {
-    return stations[record.station].is_wide ? most_passes_wide : most_passes;
+    const bool has_shape_to_cut = frame.is_battered || stations[record.station].is_wide;
+    return has_shape_to_cut ? most_passes_of_shape : most_passes;
   }
   std::optional<JobStep> dump_step();
   JobStep step_of(JobAction what, const std::string& reason = {});
