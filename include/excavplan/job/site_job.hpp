@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <excavplan/ground/terrain.hpp>
@@ -40,6 +41,8 @@ class SiteJob : public JobPlanner {
   SiteJob& operator=(SiteJob&&) noexcept;  ///< the same
 
   JobStep next() override;
+  /// The step that next() gave last, if it is not done; also of an earlier process.
+  std::optional<JobStep> present() const;
   void done(long long step, const StepReport& report) override;
   /// Takes in a scan that no step asked for. A step that is not done yet is then planned anew with
   /// a new number, but for a move.
