@@ -89,7 +89,7 @@ void StepAction::take(const RobotMessage& message) {
 
 /// Ends the step if it can.
 void StepAction::go_on() {
-  show(describe(session_));
+  if (session_.stage() == SessionStage::scanning) show(describe(session_));
   try {
     const auto outcome = session_.finish();
     if (!outcome) return;

@@ -62,6 +62,7 @@ TEST(StepAction, DoesOneStepForAGoal) {
   EXPECT_TRUE(node.motions.back().points.empty()) << "the front stays";
   node.action.report(node.report());
   ASSERT_EQ(node.ends, std::vector<StepEnd>{StepEnd::succeeded});
+  EXPECT_EQ(node.states, (States{"planning", "driving"}));
   EXPECT_TRUE(node.last.success && node.last.trustworthy && !node.last.finished);
   EXPECT_EQ(node.last.what, "move");
   EXPECT_EQ(node.last.message, "");
