@@ -68,13 +68,14 @@ void StepAction::do_step() {
   show(describe(session_));
 }
 
-void StepAction::abandon() { end(StepEnd::aborted, "another goal came: the step stays as it is"); }
+void StepAction::abandon() { give_up(StepEnd::aborted, "another goal came"); }
+void StepAction::cancel() { give_up(StepEnd::cancelled, "cancelled"); }
 
-void StepAction::cancel() {
+void StepAction::give_up(StepEnd how, const std::string& why) {
   if (!is_active_) return;
   session_.leave();
   port_.trajectory(without_points(session_.machine()));
-  end(StepEnd::cancelled, "cancelled: the step stays as it is");
+  end(how, why + ": the step stays as it is");
 }
 
 void StepAction::report(const MotionReport& report) {

@@ -123,8 +123,10 @@ TEST(StepAction, ACancelledStepStaysAsItIs) {
 
   node.begin();
   EXPECT_EQ(node.step(), step);
+  EXPECT_FALSE(node.motions.back().points.empty());
   node.action.abandon();
   EXPECT_EQ(node.ends.back(), StepEnd::aborted);
+  EXPECT_TRUE(node.motions.back().points.empty());
   node.action.report(node.report());  // it was done all the same
   EXPECT_EQ(node.ends.size(), ended + 1);
   EXPECT_EQ(node.action.session().progress().digs, 1);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/base/error.hpp>
 #include <excavplan/robot/job_session.hpp>
 
 /// @file
@@ -57,7 +58,7 @@ class StepAction {
 
   /// A goal was accepted, and no other is active.
   void begin();
-  /// Another goal came: the active one, if there is one, is aborted. The step stays as it is.
+  /// Another goal came: the active one, if there is one, is aborted as by cancel().
   void abandon();
   /// The goal was cancelled: a trajectory without points is sent, the step stays as it is.
   void cancel();
@@ -71,6 +72,7 @@ class StepAction {
 
  private:
   void do_step();
+  void give_up(StepEnd how, const std::string& why);
   void go_on();
   void show(const std::string& state);
   void end(StepEnd how, const std::string& message = {});
