@@ -90,8 +90,8 @@ excavplan_install(figures
   SUMMARY "Results as figures"
   REQUIRES_PUBLIC excavplan-results REQUIRES ${requires})
 excavplan_install(robot
-  SUMMARY "The dig cycle of a robot from its messages"
-  REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings excavplan-results)
+  SUMMARY "Dig cycle and job of a robot from its messages"
+  REQUIRES_PUBLIC excavplan-jobs REQUIRES excavplan-recordings excavplan-results)
 
 configure_package_config_file(cmake/excavplan-config.cmake.in excavplan-config.cmake
   INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)

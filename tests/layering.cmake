@@ -48,7 +48,7 @@ set(figures_may_use
 set(report_may_use
   ground change machine simulation sensing planning density job trial results drawing figures)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density site
-  results)
+  job results)
 
 # The rooms of the tools; what lies in the folder of a tool is its own.
 set(tool_rooms frame inputs live)

@@ -84,7 +84,7 @@ DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobSte
   return load;
 }
 
-CycleWayOptions way_options(const JobStep& step) {
+CycleWayOptions way_options(const JobStep& step, std::optional<FrontJoints> start) {
   const Vector2d dump = step.dump.head<2>() - Vector2d(step.base.x, step.base.y);
   CycleWayOptions options;
   options.lane = step.lane;
@@ -94,18 +94,19 @@ CycleWayOptions way_options(const JobStep& step) {
   options.cycle.dump_height = std::max(0.0, step.dump.z() - step.base.z);
   options.dump_radius = dump.norm();
   options.dumps_first = step.dumps_first;
-  if (!step.carried) return options;
-  options.start = step.carried->joints;
-  (*options.start)[3] -= step.swung;
+  if (!start && step.carried) start = step.carried->joints;
+  if (start) (*start)[3] -= step.swung;
+  options.start = start;
   return options;
 }
 
 /// In the frame of the line of the dig.
 std::variant<Way, BlockedWay> way_of_step(const JobSettings& settings, const Machine& machine,
-                                          const Terrain& ground, const JobStep& step) {
+                                          const Terrain& ground, const JobStep& step,
+                                          const std::optional<FrontJoints>& start) {
   const DigLine line = dig_line(step.base, step.swung);
   const Terrain seen = seen_along(settings, ground, line);
-  const CycleWayOptions options = way_options(step);
+  const CycleWayOptions options = way_options(step, start);
   if (step.path.poses.empty()) {
     const double payload = loose_mass(settings.site.soil, step.carried->volume);
     return way_of_dump(machine, seen, payload, options);
@@ -119,13 +120,14 @@ std::variant<Way, BlockedWay> way_of_step(const JobSettings& settings, const Mac
 }  // namespace
 
 std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, const Terrain& ground,
-                                               const JobStep& step, const MotionOptions& options) {
+                                               const JobStep& step, const MotionOptions& options,
+                                               const std::optional<FrontJoints>& start) {
   const Machine machine = machine_for_planned_path(settings.site.machine);
   Trajectory motion;
   motion.machine = machine.name;
   motion.robot_joints = machine.robot_joints;
   if (!step.moves_front()) return motion;
-  auto laid = way_of_step(settings, machine, ground, step);
+  auto laid = way_of_step(settings, machine, ground, step, start);
   if (auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
   Way& way = std::get<Way>(laid);
   for (WayPose& pose : way.poses) pose.joints[3] += step.swung;

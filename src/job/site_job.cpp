@@ -801,6 +801,8 @@ JobStep SiteJob::next() {
   return *record.present;
 }
 
+std::optional<JobStep> SiteJob::present() const { return state_->record.present; }
+
 void SiteJob::done(long long step, const StepReport& report) {
   const std::optional<JobStep>& present = state_->record.present;
   if (!present || present->id != step || present->what == JobAction::stop) return;

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
-#include <excavplan/scans/machine_front.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "robot/live_scan.hpp"
 
 namespace excavplan {
 namespace {
@@ -19,21 +18,6 @@ namespace {
 SiteSettings site_settings(const DigCycleSettings& settings) {
   return {settings.soil, settings.machine, settings.law, settings.estimate.cell_size,
           settings.site_frame};
-}
-
-/// Its points without those of the machine, which is known in its own frame alone.
-Scan without_machine(Scan scan) {
-  if (!scan.machine) return scan;
-  const Eigen::Isometry3d to_machine(scan.site_from_scan);
-  for (std::shared_ptr<const Cloud>& cloud : scan.clouds) {
-    auto rest = std::make_shared<Cloud>(*cloud);
-    for (Eigen::Vector3d& point : rest->points) {
-      if (scan.machine->holds(to_machine * point)) point.setConstant(std::nan(""));
-    }
-    cloud = std::move(rest);
-  }
-  scan.machine = nullptr;
-  return scan;
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <excavplan/planning/standing_ground.hpp>
@@ -17,24 +16,13 @@
 #include "base/text.hpp"
 #include "recording/times.hpp"
 #include "robot/cycle_site.hpp"
-#include "robot/live_scan.hpp"
-#include "robot/message_clock.hpp"
-#include "robot/recent_joints.hpp"
-#include "robot/recent_transforms.hpp"
+#include "robot/live_robot.hpp"
 
 namespace excavplan {
 namespace {
 
 using Frames = std::vector<LiveFrame>;
-using Time = std::optional<std::int64_t>;  // [ns]
-
-// Of a joint that stands still [rad]: what MoveIt allows by default between joint states and the
-// first point of a trajectory (trajectory_execution/allowed_start_tolerance).
-constexpr double most_turn = 0.01;
-
-double seconds(std::int64_t from, std::int64_t to) {
-  return 1e-9 * (static_cast<double>(to) - static_cast<double>(from));
-}
+using Time = LiveTime;
 
 std::vector<Warning> ending_trust(const std::vector<Warning>& all) {
   std::vector<Warning> some;
@@ -43,15 +31,16 @@ std::vector<Warning> ending_trust(const std::vector<Warning>& all) {
   return some;
 }
 
+LiveSettings live_settings(const DigCycleSettings& settings) {
+  return {settings.machine, settings.site_frame, settings.site_from_scan, settings.machine_in_view,
+          settings.oldest_joints};
+}
+
 /// A dig that was planned, and for which density.
 struct DigForetold {
   PlannedDig dig;
   double density_percent;
 };
-
-std::string count_text(std::size_t found, std::size_t wanted) {
-  return std::to_string(found) + " of " + std::to_string(wanted);
-}
 
 }  // namespace
 
@@ -61,27 +50,17 @@ const char* name(CycleStage stage) {
 }
 
 struct DigCycleSession::State {
-  explicit State(DigCycleSettings given) : settings(std::move(given)), density(settings.density) {
+  explicit State(DigCycleSettings given)
+      : settings(std::move(given)), robot(live_settings(settings)), density(settings.density) {
     if (!settings.site.empty()) site.emplace(settings);
   }
 
-  Time time_of(const RobotMessage& message, std::int64_t stamp);
-  void come(const RobotMessage& message, Time time);
   void mark(Time time);
-  void take_points(LiveFrame frame, Time time);
-  void take_joints(const std::vector<std::pair<std::string, double>>& positions, Time time);
-  std::optional<JointSample> sample(const std::string& joint, Time at) const;
-  std::string joint_problem(Time at) const;
-  std::string moving_problem() const;
-  std::string start_problem(const JointMotion& motion) const;
-  std::optional<MachinePosture> posture(Time at) const;
-  void settle(Frames& frames, bool all);
-  void settle_postures(Frames& frames, bool all) const;
+  void set_back(const RobotMessage& message);
+  void take_points(LiveFrame frame);
   std::string early_text() const;
   std::vector<Warning> scan_warnings(const CycleEstimate& answer, bool averaged) const;
-  Scan scan_of(Frames& frames, const char* which, bool& averaged);
   GroundScan ground_scan(Frames& frames, const char* which, bool& averaged);
-  double seconds_of(const Frames& frames) const;
   DensityOptions estimate_options() const;
   CycleEstimate estimate_of_scans(bool& averaged);
   CycleEstimate estimate_on_site(bool& averaged);
@@ -94,20 +73,16 @@ struct DigCycleSession::State {
   std::vector<Warning> plan_on_scan(const std::optional<Scan>& scan, CyclePlan& answer) const;
   std::vector<Warning> plan_with_site(const std::optional<Scan>& scan, CyclePlan& answer);
   std::vector<Warning> look_around(const std::optional<Scan>& scan);
-  std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
   Time scan_time() const;
   void add_age(CyclePlan& answer) const;
 
   DigCycleSettings settings;
+  LiveRobot robot;
   CycleStage stage = CycleStage::before;
   Frames recent, before, after;  ///< recent: since the last dig
-  RecentTransforms transforms;
-  RecentJoints joints;                         ///< of the settings' names
-  std::map<std::string, MessageClock> clocks;  ///< by topic
-  Time now;                                    ///< when the newest message came
-  Time marked;                                 ///< when the dig began or ended
-  std::size_t early = 0;                       ///< messages of points from before that
+  Time marked;                   ///< when the dig began or ended
+  std::size_t early = 0;         ///< messages of points from before that
   GroundDensity density;
   bool density_is_stated = true;
   bool last_refused = false;              ///< the last estimate was not to be trusted
@@ -118,198 +93,36 @@ struct DigCycleSession::State {
   std::optional<CycleEstimate> surveyed;  ///< what the site answered to the last dig
 };
 
-/// When a message with this stamp was measured.
-Time DigCycleSession::State::time_of(const RobotMessage& message, std::int64_t stamp) {
-  return clocks[message.topic].time(stamp, message.received);
-}
-
-/// @param time  of the message, if it does not tell when it was received
-void DigCycleSession::State::come(const RobotMessage& message, Time time) {
-  constexpr std::int64_t set_back = 1'000'000'000;  // the clock, not the order of messages; ours
-  if (message.received) {
-    now = message.received;
-    if (marked && *now < later(*marked, -set_back)) marked.reset();
-  } else if (time && (!now || *time > *now)) {
-    now = time;
-  }
-}
-
 void DigCycleSession::State::mark(Time time) {
-  if (time) marked = now = time;
+  robot.tell_time(time);
+  if (time) marked = time;
 }
 
-void DigCycleSession::State::take_points(LiveFrame frame, Time time) {
+/// A mark of a clock that was set back since does not hold.
+void DigCycleSession::State::set_back(const RobotMessage& message) {
+  constexpr std::int64_t most = 1'000'000'000;  // the clock, not the order of messages; ours
+  if (message.received && marked && *message.received < later(*marked, -most)) marked.reset();
+}
+
+void DigCycleSession::State::take_points(LiveFrame frame) {
   if (stage == CycleStage::digging) return;
-  if (time && marked && *time < *marked) {
+  if (frame.measured && marked && *frame.measured < *marked) {
     ++early;
     return;
   }
-  frame.time = time.value_or(now.value_or(0));
-  if (settings.site_frame.empty()) frame.pose = Eigen::Isometry3d(settings.site_from_scan);
-  settle(recent, false);
-  settle(after, false);
+  robot.settle(recent, false);
+  robot.settle(after, false);
   if (recent.size() == settings.scans) recent.erase(recent.begin());
   recent.push_back(std::move(frame));
-  settle_postures(recent, false);
+  robot.settle_postures(recent, false);
   if (stage == CycleStage::after && recent.size() == settings.scans) {
     after = recent;
     stage = CycleStage::done;
   }
 }
 
-void DigCycleSession::State::take_joints(
-    const std::vector<std::pair<std::string, double>>& positions, Time time) {
-  for (const auto& [name, position] : positions) {
-    if (name.empty() || !std::isfinite(position)) continue;
-    for (const RobotJoint& joint : settings.machine.robot_joints) {
-      if (joint.name == name) joints.add(name, {time.value_or(now.value_or(0)), position});
-    }
-  }
-  for (Frames* frames : {&recent, &before, &after}) settle_postures(*frames, false);
-}
-
-/// @param at  nothing: the newest
-std::optional<JointSample> DigCycleSession::State::sample(const std::string& joint, Time at) const {
-  return joints.nearest(joint, at.value_or(std::numeric_limits<std::int64_t>::max()));
-}
-
-/// Why the posture at a time, or now, is not known; empty if it is.
-std::string DigCycleSession::State::joint_problem(Time at) const {
-  const std::int64_t time = at.value_or(now.value_or(0));
-  for (const RobotJoint& joint : settings.machine.robot_joints) {
-    if (joint.name.empty()) continue;
-    const auto found = sample(joint.name, at);
-    if (!found) return "no joint states came of " + joint.name;
-    const double away = std::abs(seconds(found->time, time));
-    if (away <= settings.oldest_joints) continue;
-    return "no joint states of " + joint.name + " came within " +
-           plain_number(settings.oldest_joints) + " s, the nearest is " + readable(away) +
-           " s away";
-  }
-  return "";
-}
-
-/// Why the machine may be moving; empty if it stands.
-std::string DigCycleSession::State::moving_problem() const {
-  constexpr std::int64_t span = 500'000'000;  // [ns]; ours
-  for (const RobotJoint& joint : settings.machine.robot_joints) {
-    if (joint.name.empty()) continue;
-    const auto turned = joints.turned(joint.name, span);
-    if (!turned) {
-      return "the joint states of " + joint.name + " reach back less than " +
-             plain_number(seconds(0, span)) + " s: whether it stands still is not known";
-    }
-    if (*turned <= most_turn) continue;
-    return joint.name + " turned by " + readable(*turned) + " rad within the last " +
-           plain_number(seconds(0, span)) + " s";
-  }
-  return "";
-}
-
-/// Why the machine does not stand now where a motion begins; empty if it does.
-std::string DigCycleSession::State::start_problem(const JointMotion& motion) const {
-  const std::optional<FrontJoints> present = start();
-  if (!present) return joint_problem({});
-  std::size_t sent = 0;
-  for (std::size_t i = 0; i < settings.machine.robot_joints.size(); ++i) {
-    const RobotJoint& joint = settings.machine.robot_joints[i];
-    if (joint.name.empty()) continue;
-    const double stands = joint.from_ours((*present)[static_cast<Eigen::Index>(i)]);
-    const double off = std::abs(stands - motion.points.front().positions[sent++]);
-    if (off <= most_turn) continue;
-    return joint.name + " stands " + readable(off) + " rad from there";
-  }
-  return "";
-}
-
-std::optional<MachinePosture> DigCycleSession::State::posture(Time at) const {
-  if (!joint_problem(at).empty()) return {};
-  FrontJoints angles = FrontJoints::Zero();
-  for (std::size_t i = 0; i < settings.machine.robot_joints.size(); ++i) {
-    const RobotJoint& joint = settings.machine.robot_joints[i];
-    if (joint.name.empty()) continue;
-    angles[static_cast<Eigen::Index>(i)] = joint.to_ours(sample(joint.name, at)->position);
-  }
-  return MachinePosture{angles[3], angles.head<3>()};
-}
-
-/// Where the motion begins: sensors of joints that stand at a limit read a little beyond it.
-std::optional<FrontJoints> DigCycleSession::State::start() const {
-  constexpr double most_beyond = 0.02;  // ours [rad]
-  const std::optional<MachinePosture> present = posture({});
-  if (!present) return {};
-  FrontJoints start;
-  start << present->joints, present->swing;
-  for (std::size_t i = 0; i < settings.machine.limits.size(); ++i) {
-    const JointLimits& limits = settings.machine.limits[i];
-    double& angle = start[static_cast<Eigen::Index>(i)];
-    const double inside = std::clamp(angle, limits.lower, limits.upper);
-    if (std::abs(angle - inside) < most_beyond) angle = inside;
-  }
-  return start;
-}
-
-/// Finds poses that are not known yet; `all`: an error where one stays unknown.
-void DigCycleSession::State::settle(Frames& frames, bool all) {
-  const auto known = [](const LiveFrame& frame) { return frame.pose.has_value(); };
-  if (std::all_of(frames.begin(), frames.end(), known)) return;
-  const TransformTree tree = transforms.tree();
-  for (LiveFrame& frame : frames) {
-    if (frame.pose) continue;
-    try {
-      const MessageHeader& header = frame.header;
-      frame.pose = Eigen::Isometry3d(settings.site_from_scan) *
-                   tree.lookup(settings.site_frame, header.frame, header.stamp);
-      frame.from_sensor = tree.is_leaf(header.frame);
-    } catch (const Error&) {
-      if (all) throw;
-    }
-  }
-}
-
-/// Finds postures that are not known yet, once the joint states reach the time of the points;
-/// `all`: by those that came.
-void DigCycleSession::State::settle_postures(Frames& frames, bool all) const {
-  if (!settings.machine_in_view) return;
-  const RobotJoints& robot = settings.machine.robot_joints;
-  for (LiveFrame& frame : frames) {
-    if (frame.posture) continue;
-    const bool reached = std::all_of(robot.begin(), robot.end(), [&](const RobotJoint& joint) {
-      return joint.name.empty() || joints.reaches(joint.name, frame.time);
-    });
-    if (reached || all) frame.posture = posture(frame.time);
-  }
-}
-
-Scan DigCycleSession::State::scan_of(Frames& frames, const char* which, bool& averaged) {
-  settle(frames, true);
-  settle_postures(frames, true);
-  LiveScan live = merged(frames);
-  averaged = averaged && (live.averaged || frames.size() == 1);
-  Scan scan;
-  scan.name = std::string("scan ") + which;
-  scan.clouds = {std::make_shared<const Cloud>(std::move(live.cloud))};
-  scan.z_is_up = !settings.site_frame.empty() || !settings.site_from_scan.isIdentity(0.0);
-  if (settings.machine_in_view) {
-    const LiveFrame& first = frames.front();
-    require(first.posture.has_value(),
-            scan.name + ": the machine is in view, but " + joint_problem(first.time));
-    scan.machine = std::make_shared<const MachineFront>(settings.machine, *first.posture);
-  }
-  return scan;
-}
-
-/// When they were measured, since 1970; else by the clock of the computer [s].
-double DigCycleSession::State::seconds_of(const Frames& frames) const {
-  std::int64_t newest = 0;
-  for (const LiveFrame& frame : frames) newest = std::max(newest, frame.time);
-  if (newest > 0) return 1e-9 * static_cast<double>(newest);
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(since_1970).count();
-}
-
 GroundScan DigCycleSession::State::ground_scan(Frames& frames, const char* which, bool& averaged) {
-  return {scan_of(frames, which, averaged), seconds_of(frames)};
+  return {robot.scan_of(frames, std::string("scan ") + which, averaged), seconds_of(frames)};
 }
 
 DensityOptions DigCycleSession::State::estimate_options() const {
@@ -330,7 +143,8 @@ bool DigCycleSession::State::is_outdated() const {
 std::optional<Scan> DigCycleSession::State::last_scan() {
   Frames& seen = is_outdated() ? before : recent;
   bool averaged = true;
-  return seen.empty() ? std::nullopt : std::optional(scan_of(seen, "of the ground", averaged));
+  return seen.empty() ? std::nullopt
+                      : std::optional(robot.scan_of(seen, "scan of the ground", averaged));
 }
 
 /// As a scan shows it, level without one.
@@ -371,14 +185,14 @@ HeightMap DigCycleSession::State::ground_at_tracks(const Scan& scan) const {
 }
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
-  const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
+  const CycleWayOptions way = {robot.start(), settings.whole_cycle, settings.plan.search.objective};
   answer.posture_known = way.start.has_value();
   if (!way.start) {
     answer.warnings.emplace_back(WarningCode::posture_unknown,
-                                 joint_problem({}) +
+                                 robot.joint_problem({}) +
                                      ": the motion begins above the dig, wherever "
                                      "the machine stands");
-  } else if (const std::string moving = moving_problem(); !moving.empty()) {
+  } else if (const std::string moving = robot.moving_problem(); !moving.empty()) {
     answer.warnings.emplace_back(WarningCode::not_standing, "the machine may be moving: " + moving);
   }
   const auto refuse = [&](const std::string& why) {
@@ -414,8 +228,9 @@ Time DigCycleSession::State::scan_time() const {
 /// How old the scan is, and until when the motion holds.
 void DigCycleSession::State::add_age(CyclePlan& answer) const {
   const Time scanned = scan_time();
+  const Time now = robot.now();
   if (!scanned || !now) return;
-  answer.scan_age = std::max(0.0, seconds(*scanned, *now));
+  answer.scan_age = std::max(0.0, seconds_between(*scanned, *now));
   if (*answer.scan_age > settings.oldest_scan) {
     answer.warnings.emplace_back(WarningCode::scan_old,
                                  "the scan of the ground is " + readable(*answer.scan_age, 3) +
@@ -468,36 +283,12 @@ DigCycleSession::DigCycleSession(DigCycleSession&&) noexcept = default;
 DigCycleSession& DigCycleSession::operator=(DigCycleSession&&) noexcept = default;
 
 void DigCycleSession::take(const RobotMessage& message) {
-  const RecordedTopic topic = {message.topic, message.type, 1, 0, 0};
-  const RecordedMessage raw = {topic, 0, message.is_cdr ? Serialization::cdr : Serialization::ros1,
-                               message.bytes, "message"};
-  const std::string& from = message.topic;
-  const MessageUse use = use_of(message.type);
-  switch (use) {
-    case MessageUse::points: {
-      LiveFrame frame;
-      frame.header = decode_header(from, raw);
-      frame.points = decode_points(from, raw);
-      const Time time = state_->time_of(message, frame.header.stamp);
-      state_->come(message, time);
-      return state_->take_points(std::move(frame), time);
-    }
-    case MessageUse::transforms: {
-      auto transforms = decode_transforms(from, raw);
-      for (const StampedTransform& transform : transforms) {
-        state_->come(message, transform.is_static ? Time() : transform.stamp);
-      }
-      return state_->transforms.add(std::move(transforms));
-    }
-    case MessageUse::joints: {
-      const auto positions = decode_joints(from, raw);
-      const Time time = state_->time_of(message, decode_header(from, raw).stamp);
-      state_->come(message, time);
-      return state_->take_joints(positions, time);
-    }
-    default:
-      throw Error(ErrorKind::bad_file, from + ": found a message of " + message.type +
-                                           ", expected points, transforms or joint states");
+  State& state = *state_;
+  std::optional<LiveFrame> points = state.robot.take(message);
+  state.set_back(message);
+  if (points) return state.take_points(std::move(*points));
+  for (Frames* frames : {&state.recent, &state.before, &state.after}) {
+    state.robot.settle_postures(*frames, false);
   }
 }
 
@@ -507,7 +298,7 @@ void DigCycleSession::start_dig(Time time) {
   require(state.stage == CycleStage::digging || !state.recent.empty() || is_known,
           "the dig begins, but no scan came before it");
   if (state.stage == CycleStage::digging) return;  // told twice
-  state.settle(state.recent, true);
+  state.robot.settle(state.recent, true);
   state.before = std::move(state.recent);
   state.recent.clear();
   state.after.clear();
@@ -542,8 +333,8 @@ std::string describe(const DigCycleSession& session) {
 
 CycleEstimate DigCycleSession::State::estimate_of_scans(bool& averaged) {
   DigScans scans;
-  scans.before = scan_of(before, "before", averaged);
-  scans.after = scan_of(after, "after", averaged);
+  scans.before = robot.scan_of(before, "scan before", averaged);
+  scans.after = robot.scan_of(after, "scan after", averaged);
   CycleEstimate answer;
   answer.estimate = estimate_density(scans, settings.law, estimate_options());
   answer.before = before.size();
@@ -667,7 +458,7 @@ std::vector<Warning> DigCycleSession::State::plan_with_site(const std::optional<
 
 CyclePlan DigCycleSession::plan(Time time) {
   State& state = *state_;
-  if (time) state.now = time;
+  state.robot.tell_time(time);
   const std::optional<Scan> scan = state.last_scan();
   const DigCycleSettings& settings = state.settings;
   CyclePlan answer;
@@ -709,10 +500,11 @@ CyclePlan DigCycleSession::plan(Time time) {
 }
 
 void DigCycleSession::confirm_start(CyclePlan& plan, Time time) {
-  if (time) state_->now = time;
+  state_->robot.tell_time(time);
   if (plan.motion.points.empty()) return;
   std::vector<Warning> doubts = doubts_of(plan.stamp);
-  if (const std::string problem = plan.posture_known ? state_->start_problem(plan.motion) : "";
+  if (const std::string problem =
+          plan.posture_known ? state_->robot.start_problem(plan.motion) : "";
       !problem.empty()) {
     doubts.emplace_back(WarningCode::start_left,
                         "the machine may stand where the motion does not begin: " + problem);
@@ -723,7 +515,7 @@ void DigCycleSession::confirm_start(CyclePlan& plan, Time time) {
 
 std::vector<Warning> DigCycleSession::doubts_of(const std::optional<PlanStamp>& stamp, Time time) {
   const State& state = *state_;
-  if (time) state_->now = time;
+  state_->robot.tell_time(time);
   constexpr double same = 1e-6;  // of a pose that was written and read
   std::vector<Warning> doubts;
   const auto refuse = [&](WarningCode code, const std::string& why) {
@@ -743,10 +535,11 @@ std::vector<Warning> DigCycleSession::doubts_of(const std::optional<PlanStamp>& 
                (stamp->pose.linear() - pose.linear()).norm() <= same)) {
     refuse(WarningCode::foreign_plan, "the machine stood elsewhere when it was planned");
   }
-  if (stamp->expires && state.now && *state.now > *stamp->expires) {
-    refuse(
-        WarningCode::stale_plan,
-        "its scan became too old " + readable(seconds(*stamp->expires, *state.now), 3) + " s ago");
+  const Time now = state.robot.now();
+  if (stamp->expires && now && *now > *stamp->expires) {
+    refuse(WarningCode::stale_plan, "its scan became too old " +
+                                        readable(seconds_between(*stamp->expires, *now), 3) +
+                                        " s ago");
   }
   return doubts;
 }

@@ -3,6 +3,10 @@
 #include "robot/live_scan.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <utility>
 
 #include "recording/frame_average.hpp"
 
@@ -64,6 +68,28 @@ LiveScan merged(const std::vector<LiveFrame>& frames) {
     put(*first.pose, cloud.points);
   }
   if (first.from_sensor && stood_still(frames)) cloud.sensor_origin = first.pose->translation();
+  return scan;
+}
+
+double seconds_of(const std::vector<LiveFrame>& frames) {
+  std::int64_t newest = 0;
+  for (const LiveFrame& frame : frames) newest = std::max(newest, frame.time);
+  if (newest > 0) return 1e-9 * static_cast<double>(newest);
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(since_1970).count();
+}
+
+Scan without_machine(Scan scan) {
+  if (!scan.machine) return scan;
+  const Eigen::Isometry3d to_machine(scan.site_from_scan);
+  for (std::shared_ptr<const Cloud>& cloud : scan.clouds) {
+    auto rest = std::make_shared<Cloud>(*cloud);
+    for (Eigen::Vector3d& point : rest->points) {
+      if (scan.machine->holds(to_machine * point)) point.setConstant(std::nan(""));
+    }
+    cloud = std::move(rest);
+  }
+  scan.machine = nullptr;
   return scan;
 }
 

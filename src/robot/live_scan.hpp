@@ -10,6 +10,7 @@
 
 #include <excavplan/clouds/cloud.hpp>
 #include <excavplan/scans/machine_front.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 
 #include "recording/ros_messages.hpp"
 
@@ -21,7 +22,8 @@ namespace excavplan {
 struct LiveFrame {
   MessageHeader header;
   PointMessage points;
-  std::int64_t time = 0;                  ///< when they were measured, as far as known [ns]
+  std::optional<std::int64_t> measured;   ///< when, as its stamp tells [ns]
+  std::int64_t time = 0;                  ///< the same; if that is not known, when it came [ns]
   std::optional<Eigen::Isometry3d> pose;  ///< of the sensor in the site frame; unset: not yet known
   bool from_sensor = false;               ///< the pose is that of the sensor
   std::optional<MachinePosture> posture;  ///< of the machine then; unset: not yet known
@@ -35,5 +37,11 @@ struct LiveScan {
 
 /// @param frames  at least one, each with its pose
 LiveScan merged(const std::vector<LiveFrame>& frames);
+
+/// When they were measured, since 1970; else by the clock of the computer [s].
+double seconds_of(const std::vector<LiveFrame>& frames);
+
+/// Its points without those of the machine. @param scan  puts its points into the machine's frame
+Scan without_machine(Scan scan);
 
 }  // namespace excavplan

@@ -10,6 +10,7 @@
 #include <excavplan/scans/scan_terrain.hpp>
 
 #include "base/check.hpp"
+#include "robot/live_robot.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,15 +31,12 @@ std::optional<double> known(double number) {
   return std::isnan(number) ? std::nullopt : std::optional(number);
 }
 
-/// Those that can be checked one by one.
-void check_numbers(const NodeParameters& given) {
+/// Of scans, joint states and the motion.
+template <typename Parameters>
+void check_shared(const Parameters& given) {
   require_in(parameter("scans"), given.scans, 1.0, DigCycleSession::most_scans);
   require(given.joint_age_seconds > 0.0, parameter("joint_age_seconds"), given.joint_age_seconds,
           "above 0");
-  require(given.scan_age_seconds > 0.0, parameter("scan_age_seconds"), given.scan_age_seconds,
-          "above 0");
-  naming("density_percent", [&] { require_density({given.density_percent, 0.0}); });
-  naming("density_sd_percent", [&] { require_density({0.0, given.density_sd_percent}); });
   const auto check_motion = [](const std::string& name, double MotionOptions::*field,
                                double value) {
     MotionOptions motion;
@@ -48,6 +46,24 @@ void check_numbers(const NodeParameters& given) {
   check_motion("speed_fraction", &MotionOptions::speed_fraction, given.speed_fraction);
   check_motion("rate_hz", &MotionOptions::rate, given.rate_hz);
   check_motion("max_jerk", &MotionOptions::max_jerk, given.max_jerk);
+}
+
+template <typename Parameters>
+MotionOptions motion_of(const Parameters& given) {
+  MotionOptions motion;
+  motion.rate = given.rate_hz;
+  motion.max_jerk = given.max_jerk;
+  motion.speed_fraction = given.speed_fraction;
+  return motion;
+}
+
+/// Those that can be checked one by one.
+void check_numbers(const NodeParameters& given) {
+  check_shared(given);
+  require(given.scan_age_seconds > 0.0, parameter("scan_age_seconds"), given.scan_age_seconds,
+          "above 0");
+  naming("density_percent", [&] { require_density({given.density_percent, 0.0}); });
+  naming("density_sd_percent", [&] { require_density({0.0, given.density_sd_percent}); });
   const auto seconds = known(given.search_seconds);
   if (!seconds) return;
   require(given.search, parameter("search_seconds") + ": has no effect without search");
@@ -72,17 +88,6 @@ void set_surroundings(const std::string& file, DigCycleSettings& settings) {
   settings.surroundings = swing_terrain_from_scan(scan, settings.machine).terrain;
 }
 
-void name_joints(const std::vector<std::string>& names, RobotJoints& joints) {
-  if (names.empty()) return;
-  require(names.size() == joints.size(), parameter("joint_names") + ": has " +
-                                             std::to_string(names.size()) +
-                                             " names, must have 4: boom, arm, bucket, swing");
-  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
-  for (std::size_t i = 0; i < 3; ++i) {
-    require(!names[i].empty(), parameter("joint_names") + ": boom, arm and bucket need a name");
-  }
-}
-
 }  // namespace
 
 NodeSettings node_settings(const NodeParameters& given) {
@@ -94,7 +99,7 @@ NodeSettings node_settings(const NodeParameters& given) {
   settings.site_frame = given.site_frame;
   if (!given.frame_file.empty()) settings.site_from_scan = read_frame(given.frame_file);
   settings.site = given.site;
-  name_joints(given.joint_names, settings.machine.robot_joints);
+  name_joints(given.joint_names, settings.machine.robot_joints, parameter("joint_names") + ": ");
   settings.machine_in_view = given.machine_in_view;
   settings.digs_as_planned = given.digs_as_planned;
   settings.level_ground = given.level_ground;
@@ -105,9 +110,7 @@ NodeSettings node_settings(const NodeParameters& given) {
   settings.oldest_scan = given.scan_age_seconds;
   if (const auto seconds = known(given.search_seconds)) settings.search_seconds = *seconds;
   settings.whole_cycle = given.whole_cycle;
-  settings.motion.rate = given.rate_hz;
-  settings.motion.max_jerk = given.max_jerk;
-  settings.motion.speed_fraction = given.speed_fraction;
+  settings.motion = motion_of(given);
   settings.plan.trajectory.speed_fraction = given.speed_fraction;
   naming("whole_cycle", [&] {
     require(!given.whole_cycle || !settings.machine.robot_joints[3].name.empty(),
@@ -116,6 +119,21 @@ NodeSettings node_settings(const NodeParameters& given) {
   });
   check(settings);
   return node;
+}
+
+JobSessionSettings job_node_settings(const JobNodeParameters& given) {
+  check_shared(given);
+  require(!given.job.empty(), parameter("job") + ": is missing: folder of a job of plan-site");
+  JobSessionSettings settings;
+  settings.folder = given.job;
+  settings.scans = static_cast<std::size_t>(given.scans);
+  settings.site_frame = given.site_frame;
+  if (!given.frame_file.empty()) settings.site_from_scan = read_frame(given.frame_file);
+  settings.joint_names = given.joint_names;
+  settings.machine_in_view = given.machine_in_view;
+  settings.oldest_joints = given.joint_age_seconds;
+  settings.motion = motion_of(given);
+  return settings;
 }
 
 }  // namespace excavplan

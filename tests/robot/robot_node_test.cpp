@@ -59,6 +59,31 @@ TEST(RobotNode, ParametersAreTheSettings) {
             "parameter joint_names: has 1 names, must have 4: boom, arm, bucket, swing");
 }
 
+TEST(RobotNode, ParametersOfAJob) {
+  const auto settings_by = [](std::map<std::string, std::any> given) {
+    GivenParameters parameters = {std::move(given)};
+    return job_settings_of(parameters);
+  };
+  EXPECT_EQ(error_of([&] { settings_by({}); }),
+            "parameter job: is missing: folder of a job of plan-site");
+  const JobSessionSettings settings = settings_by({{"job", std::string("trench")},
+                                                   {"scans", 3},
+                                                   {"site_frame", std::string("map")},
+                                                   {"machine_in_view", true},
+                                                   {"joint_age_seconds", 2.0},
+                                                   {"rate_hz", 50.0}});
+  EXPECT_EQ(settings.folder, "trench");
+  EXPECT_EQ(settings.scans, 3U);
+  EXPECT_EQ(settings.site_frame, "map");
+  EXPECT_TRUE(settings.machine_in_view);
+  EXPECT_EQ(settings.oldest_joints, 2.0);
+  EXPECT_EQ(settings.motion.rate, 50.0);
+  EXPECT_NE(error_of([&] {
+              settings_by({{"job", std::string("trench")}, {"rate_hz", 5.0}});
+            }).find("parameter rate_hz: "),
+            std::string::npos);
+}
+
 TEST(RobotNode, ReadsTheSurroundingsInTheFrameOfTheScans) {
   const TemporaryFolder folder;
   std::string points;

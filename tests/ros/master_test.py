@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node of ROS 1 under a running master.
 
-master_test.py NODE GENERATED BIN DATA: the program, the Python folder of its generated services,
-the folder of the tools and that of the data.
+master_test.py NODES GENERATED BIN DATA: the folder of the programs, the Python folder of their
+generated services, the folder of the tools and that of the data.
 """
 
 import json
@@ -20,7 +20,9 @@ import threading
 import time
 import unittest
 
-NODE, GENERATED, BIN, DATA = sys.argv[1:5]
+NODES, GENERATED, BIN, DATA = sys.argv[1:5]
+NODE = os.path.join(NODES, "excavplan_node")
+JOB_NODE = os.path.join(NODES, "excavplan_job_node")
 JOINTS = ["boom_joint", "arm_joint", "bucket_joint", "swing_joint"]
 PATIENCE = 60.0  # [s]
 
@@ -37,9 +39,12 @@ os.environ.update(ROS_MASTER_URI=f"http://localhost:{PORT}", ROS_HOSTNAME="local
                   ROS_HOME=HOME.name, ROS_LOG_DIR=HOME.name, EXCAVPLAN_DATA=DATA)
 sys.path.insert(0, GENERATED)
 
+import actionlib  # noqa: E402
 import rosgraph  # noqa: E402
 import rospy  # noqa: E402
-from excavplan_ros.srv import DigAndPlan, Estimate, Plan  # noqa: E402
+from actionlib_msgs.msg import GoalStatus  # noqa: E402
+from excavplan_ros.msg import DoStepAction, DoStepGoal  # noqa: E402
+from excavplan_ros.srv import DigAndPlan, Estimate, Plan, StepDone, StepDoneRequest  # noqa: E402
 from geometry_msgs.msg import TransformStamped  # noqa: E402
 from rosgraph_msgs.msg import Log  # noqa: E402
 from sensor_msgs.msg import JointState, PointCloud2, PointField  # noqa: E402
@@ -213,6 +218,226 @@ class Node:
         for key in self.parameters:
             if rospy.has_param("/excavplan/" + key):
                 rospy.delete_param("/excavplan/" + key)
+
+
+class JobNode:
+    """The program of a job in this folder, and a client of its action."""
+
+    def __init__(self, folder, **parameters):
+        words = [f"_{key}:={value}" for key, value in {"job": folder, **parameters}.items()]
+        self.parameters = ["job", *parameters]
+        self.process = subprocess.Popen([JOB_NODE, "__name:=job", *words],
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.trajectories = []
+        self.shown = []
+        self.step = None
+        self.angles = None
+        self.standing = threading.Thread(target=self.send_joints)
+        self.is_over = threading.Event()
+        self.heard = [rospy.Subscriber("/job/trajectory", JointTrajectory, self.trajectories.append),
+                      rospy.Subscriber("/job/step", String, self.take_step)]
+        self.publishers = {
+            "points": rospy.Publisher("/points", PointCloud2, queue_size=10),
+            "joints": rospy.Publisher("/joint_states", JointState, queue_size=10),
+        }
+        for topic, publisher in self.publishers.items():
+            wait_until(lambda p=publisher: p.get_num_connections() > 0, f"{topic} to be heard")
+        wait_until(lambda: self.heard[0].get_num_connections() > 0, "the trajectory's topic")
+        self.client = actionlib.SimpleActionClient("/job/do_step", DoStepAction)
+        if not self.client.wait_for_server(rospy.Duration(PATIENCE)):
+            raise AssertionError("no server of the action")
+
+    def take_step(self, message):
+        self.step = json.loads(message.data)
+
+    def stand(self, angles):
+        """From now on the joints stand there."""
+        self.angles = angles
+        self.standing.start()
+        time.sleep(0.8)
+
+    def send_joints(self):
+        while not self.is_over.wait(0.1):
+            message = JointState(name=JOINTS, position=self.angles)
+            message.header.stamp = rospy.Time.from_sec(time.time())
+            self.publishers["joints"].publish(message)
+
+    def scan(self, data):
+        message = cloud(data)
+        message.header.stamp = rospy.Time.from_sec(time.time())
+        self.publishers["points"].publish(message)
+
+    def begin(self):
+        self.shown, self.trajectories[:] = [], []
+        self.client.send_goal(DoStepGoal(), feedback_cb=self.shown.append)
+
+    def states(self):
+        return [feedback.state for feedback in self.shown]
+
+    def wait_for(self, state):
+        wait_until(lambda: state in self.states() or self.client.get_result(), f"'{state}'")
+        if state not in self.states():
+            raise AssertionError(f"the goal ended: {self.client.get_result().message}")
+        return self.shown[-1]
+
+    def report(self, step, **told):
+        rospy.wait_for_service("/job/step_done", PATIENCE)
+        return rospy.ServiceProxy("/job/step_done", StepDone)(StepDoneRequest(step=step, **told))
+
+    def result(self):
+        if not self.client.wait_for_result(rospy.Duration(PATIENCE)):
+            raise AssertionError("no result")
+        return self.client.get_result()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.is_over.set()
+        if self.angles:
+            self.standing.join()
+        for each in (*self.heard, *self.publishers.values()):
+            each.unregister()
+        self.process.send_signal(signal.SIGKILL)
+        self.process.communicate(timeout=PATIENCE)
+        for key in self.parameters:
+            rospy.delete_param("/job/" + key)
+
+
+class Job(unittest.TestCase):
+    STANDS = [-0.6, 1.6, 0.5, 0.4]
+
+    @classmethod
+    def setUpClass(cls):
+        places = [0.1 * i - 9.5 for i in range(191)]
+        cls.level = b"".join(struct.pack("<fff", x + 3, y, 0) for x in places for y in places)
+
+    def begun(self):
+        """The folder of a short trench in level ground, as plan-site begins it."""
+        folder = tempfile.mkdtemp(dir=HOME.name)
+        scan = os.path.join(folder, "level.xyz")
+        with open(scan, "w", encoding="ascii") as file:
+            file.writelines("%.2f %.2f %.2f\n" % point
+                            for point in struct.iter_unpack("<fff", self.level))
+        job = os.path.join(folder, "job")
+        tool("plan-site", "new", job, "--trench", "2.5x1x0.4", "--from", "4,0", "--heading", "0",
+             "--scan", scan, "--soil", "loam", "--windrow", "0,1.5,9,1.5,9,5,0,5")
+        return job
+
+    def do_move(self, node):
+        node.begin()
+        shown = node.wait_for("driving")
+        self.assertEqual((shown.what, shown.step), ("move", node.step["step"]))
+        base = node.step["base"]
+        told = node.report(shown.step, base=[base["x_m"], base["y_m"], base["heading_rad"]])
+        self.assertTrue(told.success, told.message)
+        return node.result()
+
+    def test_does_steps_with_feedback(self):
+        folder = self.begun()
+        with JobNode(folder, scans=2) as node:
+            moved = self.do_move(node)
+            self.assertTrue(moved.success and moved.trustworthy, moved.message)
+            self.assertEqual(node.states(), ["planning", "driving"])
+            self.assertEqual(json.loads(moved.progress_json)["moves"], 1)
+
+            node.stand(self.STANDS)
+            node.begin()
+            shown = node.wait_for("driving")
+            self.assertEqual(shown.what, "dig")
+            wait_until(lambda: node.trajectories, "the trajectory")
+            self.assertGreater(len(node.trajectories[0].points), 10)
+            for one, other in zip(node.trajectories[0].points[0].positions, self.STANDS):
+                self.assertAlmostEqual(one, other, 9)
+            self.assertEqual(node.step["trajectory_points"], len(node.trajectories[0].points))
+            self.assertEqual(node.client.get_state(), GoalStatus.ACTIVE)
+            told = node.report(shown.step, payload_kg=[40.0], energy_kj=[90.0])  # little: it looks
+            self.assertTrue(told.success, told.message)
+            dug = node.result()
+            self.assertTrue(dug.success, dug.message)
+            self.assertEqual(json.loads(dug.progress_json)["payload_kg"], 40.0)
+
+            node.begin()
+            shown = node.wait_for("driving")
+            self.assertEqual(shown.what, "scan")
+            self.assertTrue(node.report(shown.step).success)
+            node.wait_for("scan 0 of 2")
+            self.send_junk(node)
+            node.scan(self.level)
+            self.assertGreaterEqual(node.wait_for("scan 1 of 2").share_done, 0.0)
+            node.scan(self.level)
+            seen = node.result()
+            self.assertTrue(seen.success, seen.message)
+            self.assertIn("no_hole_found: ", " ".join(seen.warnings))  # none was dug
+            self.assertFalse(seen.trustworthy)
+            self.assertEqual(json.loads(seen.progress_json)["scans"], 1)
+        shown = tool("plan-site", "show", folder)["progress"]
+        self.assertEqual((shown["moves"], shown["digs"], shown["scans"]), (1, 1, 1))
+
+    def send_junk(self, node):
+        told = []
+        log = rospy.Subscriber("/rosout", Log, lambda message: told.append(message.msg))
+        self.addCleanup(log.unregister)
+        wait_until(lambda: log.get_num_connections() > 0, "rosout")
+        wait_until(lambda: node.publishers["points"].publish(Junk(data=b"\xff" * 40)) or
+                   time.sleep(0.2) or any("/points: " in text for text in told), "the refusal")
+
+    def test_same_step_as_plan_site_after_cancel_and_kill(self):
+        folder = self.begun()
+        with JobNode(folder, scans=1) as node:
+            self.do_move(node)
+            node.stand(self.STANDS)
+            node.begin()
+            dig = node.wait_for("driving")
+            wrong = node.report(dig.step + 7, payload_kg=[300.0])
+            self.assertFalse(wrong.success)
+            self.assertIn(f"the present one is {dig.step}", wrong.message)
+            self.assertIn("more than one", node.report(dig.step, payload_kg=[1.0, 2.0]).message)
+            self.assertEqual(node.client.get_state(), GoalStatus.ACTIVE)
+            node.client.cancel_goal()
+            cancelled = node.result()
+            self.assertEqual(node.client.get_state(), GoalStatus.PREEMPTED)
+            self.assertFalse(cancelled.success)
+            wait_until(lambda: len(node.trajectories) > 1, "a trajectory without points")
+            self.assertEqual(node.trajectories[-1].points, [])
+            node.begin()
+            self.assertEqual(node.wait_for("driving").step, dig.step)
+            step = node.step
+        with JobNode(folder, scans=1) as node:  # the one before was killed
+            node.begin()  # without joint states
+            refused = node.result()
+            self.assertEqual(node.client.get_state(), GoalStatus.ABORTED)
+            self.assertIn("posture_unknown: ", refused.message)
+            self.assertEqual(node.trajectories[-1].points, [])
+            for key in ("step", "what", "path", "dump", "predicted", "base"):
+                self.assertEqual(node.step[key], step[key], key)
+            self.assertTrue(node.report(dig.step, payload_kg=[300.0]).success)
+            self.assertFalse(node.report(dig.step, payload_kg=[300.0]).success)
+        shown = tool("plan-site", "next", folder)
+        self.assertGreater(shown["step"], dig.step)
+
+    def test_another_goal_ends_the_first(self):
+        with JobNode(self.begun(), scans=1) as node:
+            node.begin()
+            node.wait_for("driving")
+            other = actionlib.SimpleActionClient("/job/do_step", DoStepAction)
+            self.assertTrue(other.wait_for_server(rospy.Duration(PATIENCE)))
+            other.send_goal(DoStepGoal())
+            self.assertIn("another goal", node.result().message)
+            wait_until(lambda: other.get_state() == GoalStatus.ACTIVE, "the other goal")
+            self.assertTrue(node.report(node.step["step"]).success)
+            self.assertTrue(other.wait_for_result(rospy.Duration(PATIENCE)))
+            self.assertTrue(other.get_result().success)
+
+    def test_refuses_bad_parameters(self):
+        for name, value, told in (("job", "", "parameter job: is missing"), ("job", "/nowhere", "/nowhere"),
+                                  ("scans", 0, "parameter scans is 0")):
+            rospy.set_param("/bad/" + name, value)
+            done = subprocess.run([JOB_NODE, "__name:=bad"], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
+            rospy.delete_param("/bad/" + name)
+            self.assertEqual(done.returncode, 1, name)
+            self.assertIn(told, done.stdout.decode())
 
 
 class Master(unittest.TestCase):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 cmake_minimum_required(VERSION 3.24)
 
-# The node of ROS 1: installs BUILD, a build of SOURCE, builds ros/ros1/excavplan_ros against it with
+# The nodes of ROS 1: installs BUILD, a build of SOURCE, builds ros/ros1/excavplan_ros against it with
 # catkin and runs master_test.py, which starts a master. Skipped where ROS 1 is not installed.
 
 function(run)
@@ -17,9 +17,10 @@ endfunction()
 
 set(python /usr/bin/python3)
 execute_process(COMMAND ${python} -c
-    "import rospy, rosmaster, roslaunch, genmsg, gencpp, catkin, em, sensor_msgs.msg, tf2_msgs.msg, trajectory_msgs.msg"
+    "import rospy, actionlib, rosmaster, roslaunch, genmsg, gencpp, catkin, em, sensor_msgs.msg, tf2_msgs.msg, trajectory_msgs.msg"
   OUTPUT_QUIET ERROR_VARIABLE missing RESULT_VARIABLE result)
-if(NOT result EQUAL 0 OR NOT EXISTS /usr/bin/roscore OR NOT EXISTS /usr/include/ros/ros.h)
+if(NOT result EQUAL 0 OR NOT EXISTS /usr/bin/roscore OR NOT EXISTS /usr/include/ros/ros.h
+   OR NOT EXISTS /usr/include/actionlib/server/simple_action_server.h)
   message(STATUS "skipped: ROS 1 is not installed, see the ros packages of scripts/packages-check-all.txt ${missing}")
   return()
 endif()
@@ -38,7 +39,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/ros/ros1/excavplan_ros -B ${WORK}/build -D CMA
 run(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
 run(${CMAKE_COMMAND} -E env --unset=LD_PRELOAD
   ${python} -B ${SOURCE}/tests/ros/master_test.py
-  ${WORK}/build/devel/lib/excavplan_ros/excavplan_node
+  ${WORK}/build/devel/lib/excavplan_ros
   ${WORK}/build/devel/lib/python3/dist-packages
   ${BUILD}/bin ${SOURCE}/data)
 message(STATUS "${output}")

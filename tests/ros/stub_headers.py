@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
-"""stub_headers.py PACKAGE OUT: as much of the headers of ROS 2 (Humble) as the node of PACKAGE
-uses, to check its syntax without ROS 2. The messages have the fields of their definitions, rclcpp
-the signatures of its documentation, without any code but that of parameters."""
+"""stub_headers.py PACKAGE OUT: as much of the headers of ROS 2 (Humble) as the nodes of PACKAGE
+use, to check their syntax without ROS 2. The messages have the fields of their definitions, rclcpp and
+rclcpp_action the signatures of their documentation, without any code but that of parameters."""
 
 import pathlib
 import re
@@ -24,7 +24,7 @@ MESSAGES = {
 }
 
 PLAIN = {"bool": "bool", "string": "std::string", "float64": "double", "int32": "std::int32_t",
-         "uint32": "std::uint32_t"}
+         "int64": "std::int64_t", "uint32": "std::uint32_t"}
 
 RCLCPP = """#pragma once
 #include <chrono>
@@ -136,6 +136,37 @@ bool shutdown();
 #define RCLCPP_INFO(...) stub_log(__VA_ARGS__)
 """
 
+RCLCPP_ACTION = """#pragma once
+#include <array>
+#include <rclcpp/rclcpp.hpp>
+namespace rclcpp_action {
+using GoalUUID = std::array<std::uint8_t, 16>;
+enum class GoalResponse : std::int8_t { REJECT = 1, ACCEPT_AND_EXECUTE = 2, ACCEPT_AND_DEFER = 3 };
+enum class CancelResponse : std::int8_t { REJECT = 1, ACCEPT = 2 };
+template <typename A> struct ServerGoalHandle {
+  bool is_canceling() const;
+  bool is_active() const;
+  bool is_executing() const;
+  void publish_feedback(std::shared_ptr<typename A::Feedback> feedback);
+  void abort(std::shared_ptr<typename A::Result> result);
+  void succeed(std::shared_ptr<typename A::Result> result);
+  void canceled(std::shared_ptr<typename A::Result> result);
+};
+template <typename A> struct Server {
+  using SharedPtr = std::shared_ptr<Server>;
+  using GoalCallback =
+      std::function<GoalResponse(const GoalUUID&, std::shared_ptr<const typename A::Goal>)>;
+  using CancelCallback = std::function<CancelResponse(std::shared_ptr<ServerGoalHandle<A>>)>;
+  using AcceptedCallback = std::function<void(std::shared_ptr<ServerGoalHandle<A>>)>;
+};
+template <typename A, typename N>
+typename Server<A>::SharedPtr create_server(N node, const std::string& name,
+                                            typename Server<A>::GoalCallback goal,
+                                            typename Server<A>::CancelCallback cancel,
+                                            typename Server<A>::AcceptedCallback accepted);
+}  // namespace rclcpp_action
+"""
+
 
 def small(name):
     """As rosidl names the header of a type: point_cloud2, tf_message."""
@@ -180,16 +211,18 @@ def write(folder, package, kind, name, text, body):
 
 def main():
     package, out = map(pathlib.Path, sys.argv[1:3])
-    (out / "rclcpp").mkdir(parents=True, exist_ok=True)
-    (out / "rclcpp" / "rclcpp.hpp").write_text(RCLCPP, encoding="utf-8")
+    for name, text in (("rclcpp", RCLCPP), ("rclcpp_action", RCLCPP_ACTION)):
+        (out / name).mkdir(parents=True, exist_ok=True)
+        (out / name / (name + ".hpp")).write_text(text, encoding="utf-8")
     for full, text in MESSAGES.items():
         owner, name = full.split("/")
         write(out, owner, "msg", name, text, struct(name, text))
-    for file in sorted(package.glob("srv/*.srv")):
-        request, response = file.read_text(encoding="utf-8").split("---")
-        body = (f"struct {file.stem} {{\n{struct('Request', request)}"
-                f"{struct('Response', response)}}};\n")
-        write(out, "excavplan_ros", "srv", file.stem, request + response, body)
+    for kind, parts in (("srv", ("Request", "Response")), ("action", ("Goal", "Result", "Feedback"))):
+        for file in sorted(package.glob(f"{kind}/*.{kind}")):
+            texts = file.read_text(encoding="utf-8").split("---")
+            body = "".join(map(struct, parts, texts))
+            write(out, "excavplan_ros", kind, file.stem, "".join(texts),
+                  f"struct {file.stem} {{\n{body}}};\n")
 
 
 main()

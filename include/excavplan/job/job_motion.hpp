@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include <excavplan/job/job_settings.hpp>
@@ -15,10 +16,13 @@ namespace excavplan {
 /// the drag so that the tooth stays on the line, and the front reaches out accordingly. Clear of
 /// the ground, of the obstacles of the design and of the truck's bed as way_of_cycle() sees it.
 /// @param ground  before the dig, in the site's frame
+/// @param start  joints from which it begins, the swing from that heading [rad]; nothing: from
+/// where a load is carried, else where the path of the dig begins
 /// @return the motion, without points of a step that is no dig; or what blocks the way
 /// @throws Error (bad_input) as way_of_cycle() and time_way()
 std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, const Terrain& ground,
                                                const JobStep& step,
-                                               const MotionOptions& options = {});
+                                               const MotionOptions& options = {},
+                                               const std::optional<FrontJoints>& start = {});
 
 }  // namespace excavplan

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <excavplan/ground/terrain.hpp>
@@ -40,6 +41,8 @@ class SiteJob : public JobPlanner {
   SiteJob& operator=(SiteJob&&) noexcept;  ///< the same
 
   JobStep next() override;
+  /// The step that next() gave last, if it is not done; also of an earlier process.
+  std::optional<JobStep> present() const;
   /// @throws Error (bad_input) if a number of the report is not finite, or a payload or a stall is
   /// of a step that does not dig; as Site::update(). Nothing is changed then.
   void done(long long step, const StepReport& report) override;

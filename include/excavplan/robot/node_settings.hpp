@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <excavplan/robot/dig_cycle_settings.hpp>
+#include <excavplan/robot/job_session.hpp>
 
 /// @file
 /// The parameters of the nodes of ROS 1 and ROS 2 (docs/ros.md#parameters).
@@ -78,19 +79,56 @@ void for_each_parameter(NodeParameters& all, const Use& use) {
   use("whole_cycle", all.whole_cycle), use("send_doubtful", all.send_doubtful);
 }
 
+/// Those of the node of a job.
+struct JobNodeParameters {
+  std::string job;                       ///< as JobSessionSettings::folder
+  int scans = NodeParameters{}.scans;    ///< as JobSessionSettings::scans
+  std::string site_frame;                ///< as JobSessionSettings::site_frame
+  std::string frame_file;                ///< of JobSessionSettings::site_from_scan
+  std::vector<std::string> joint_names;  ///< as JobSessionSettings::joint_names
+  bool machine_in_view = false;          ///< as JobSessionSettings::machine_in_view
+  double joint_age_seconds = NodeParameters{}.joint_age_seconds;  ///< as of NodeParameters
+  double speed_fraction = NodeParameters{}.speed_fraction;        ///< likewise
+  double rate_hz = NodeParameters{}.rate_hz;                      ///< likewise
+  double max_jerk = NodeParameters{}.max_jerk;                    ///< likewise
+};
+
+/// Calls `use(name, member)` for each parameter.
+template <typename Use>
+void for_each_parameter(JobNodeParameters& all, const Use& use) {
+  use("job", all.job), use("scans", all.scans);
+  use("site_frame", all.site_frame), use("frame_file", all.frame_file);
+  use("joint_names", all.joint_names), use("joint_age_seconds", all.joint_age_seconds);
+  use("machine_in_view", all.machine_in_view);
+  use("speed_fraction", all.speed_fraction);
+  use("rate_hz", all.rate_hz), use("max_jerk", all.max_jerk);
+}
+
 /// The settings that parameters give, all of them checked.
 /// @throws Error as cycle_settings() and read_frame(), or (bad_input) naming a parameter
 NodeSettings node_settings(const NodeParameters& given);
+/// The same. @throws Error as read_frame(), or (bad_input) naming a parameter
+JobSessionSettings job_node_settings(const JobNodeParameters& given);
 
-/// The same of those that a node reads.
+/// Those that a node reads: NodeParameters or JobNodeParameters.
 /// @param parameters  has `value(name, fallback)` for texts, numbers, flags, counts (int) and lists
 /// of texts
-template <typename Parameters>
-NodeSettings settings_of(Parameters& parameters) {
-  NodeParameters given;
+template <typename Given, typename Parameters>
+Given parameters_of(Parameters& parameters) {
+  Given given;
   for_each_parameter(
       given, [&](const char* name, auto& member) { member = parameters.value(name, member); });
-  return node_settings(given);
+  return given;
+}
+/// The settings that these give. @throws Error as node_settings()
+template <typename Parameters>
+NodeSettings settings_of(Parameters& parameters) {
+  return node_settings(parameters_of<NodeParameters>(parameters));
+}
+/// Likewise. @throws Error as job_node_settings()
+template <typename Parameters>
+JobSessionSettings job_settings_of(Parameters& parameters) {
+  return job_node_settings(parameters_of<JobNodeParameters>(parameters));
 }
 
 }  // namespace excavplan

@@ -5,83 +5,38 @@
 /// The dig cycle as a node of ROS 1 (docs/ros.md): topics to DigCycleSession, its answers to topics
 /// and services.
 
-#include <cstdint>
-#include <cstdio>
 #include <limits>
-#include <optional>
 
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
-#include <sensor_msgs/JointState.h>
-#include <sensor_msgs/PointCloud2.h>
 #include <std_msgs/Bool.h>
-#include <std_msgs/String.h>
-#include <tf2_msgs/TFMessage.h>
-#include <trajectory_msgs/JointTrajectory.h>
-#include <excavplan/robot/robot_node.hpp>
 
 #include <excavplan_ros/DigAndPlan.h>
 #include <excavplan_ros/Estimate.h>
 #include <excavplan_ros/Plan.h>
 
+#include "node_parts.hpp"
 #include "parameters.hpp"
-#include "raw_message.hpp"
 
 namespace excavplan_ros {
 namespace {
 
 using excavplan::CycleEstimate;
 using excavplan::CyclePlan;
-using excavplan::Warning;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-trajectory_msgs::JointTrajectory message_of(const excavplan::JointMotion& motion) {
-  return excavplan::joint_trajectory_message<trajectory_msgs::JointTrajectory>(
-      motion, [](ros::Duration& time, std::int64_t ns) { time.fromNSec(ns); });
-}
-
-std_msgs::String text_message(const std::string& text) {
-  std_msgs::String message;
-  message.data = text;
-  return message;
-}
-
-/// Shows warnings, and gives their texts.
-std::vector<std::string> told(const std::vector<Warning>& warnings) {
-  std::vector<std::string> texts = excavplan::texts_of(warnings);
-  for (const std::string& text : texts) ROS_WARN("%s", text.c_str());
-  return texts;
-}
-
-std::optional<std::int64_t> known_time(const ros::Time& time) {
-  return excavplan::known_time(static_cast<std::int64_t>(time.toNSec()));
-}
-
-std::optional<std::int64_t> time_now() { return known_time(ros::Time::now()); }
 
 class Node {
  public:
   Node(ros::NodeHandle topics, const ros::NodeHandle& own) : Node(topics, own, settings_of(own)) {}
 
-  void spin() {
-    constexpr double longest_wait = 0.02;  // for joint states [s]; ours
-    while (ros::ok()) {
-      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(longest_wait));
-      joint_queue_.callAvailable();
-    }
-  }
+  void spin() { robot_.spin(); }
 
  private:
   Node(ros::NodeHandle topics, const ros::NodeHandle& own, const excavplan::NodeSettings& settings)
       : session_(settings.session),
         send_doubtful_(settings.send_doubtful),
         topics_(topics),
-        own_(own) {
-    listen<sensor_msgs::PointCloud2>("points", "sensor_msgs/msg/PointCloud2", 10);
-    listen<tf2_msgs::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", 1000);
-    listen<tf2_msgs::TFMessage>("/tf_static", "tf2_msgs/msg/TFMessage", 1000);
-    listen_to_joints();
+        own_(own),
+        robot_(topics, [this](const excavplan::RobotMessage& message) { take(message); }) {
     mark("start_dig", [this] { session_.start_dig(time_now()); });
     mark("end_dig", [this] { session_.end_dig(time_now()); });
     state_ = own_.advertise<std_msgs::String>("state", 1, true);
@@ -94,50 +49,16 @@ class Node {
     tell_state();
   }
 
-  /// Does the work; an error goes to rosout and is returned.
-  template <typename Work>
-  std::string error_of(const Work& work) {
-    try {
-      work();
-      return "";
-    } catch (const std::exception& error) {
-      ROS_ERROR("%s", error.what());
-      return error.what();
-    }
-  }
-
-  template <typename Message>
-  void listen(const std::string& topic, const std::string& type, unsigned queue) {
-    const std::string name = topics_.resolveName(topic);
-    const boost::function<void(const boost::shared_ptr<const Raw<Message>>&)> take =
-        [this, name, type](const boost::shared_ptr<const Raw<Message>>& message) {
-          error_of([&] { session_.take({name, type, false, message->bytes, time_now()}); });
-          tell_state();
-        };
-    subscribers_.push_back(topics_.subscribe<Raw<Message>>(name, queue, take));
-  }
-
-  /// In a queue of their own, so that they can be taken before and after a plan, within its call.
-  void listen_to_joints() {
-    using Event = ros::MessageEvent<const Raw<sensor_msgs::JointState>>;
-    const std::string name = topics_.resolveName("joint_states");
-    const boost::function<void(const Event&)> take = [this, name](const Event& event) {
-      error_of([&] {
-        session_.take({name, "sensor_msgs/msg/JointState", false, event.getConstMessage()->bytes,
-                       known_time(event.getReceiptTime())});
-      });
-    };
-    ros::SubscribeOptions options;
-    options.initByFullCallbackType<const Event&>(name, 100, take);
-    options.callback_queue = &joint_queue_;
-    subscribers_.push_back(topics_.subscribe(options));
+  void take(const excavplan::RobotMessage& message) {
+    error_of([&] { session_.take(message); });
+    tell_state();
   }
 
   template <typename Work>
   void mark(const std::string& topic, const Work& work) {
     const boost::function<void(const std_msgs::Bool::ConstPtr&)> take =
         [this, work](const std_msgs::Bool::ConstPtr& message) {
-          joint_queue_.callAvailable();  // which were received before it
+          robot_.take_joints();  // which were received before it
           if (message->data) error_of(work);
           tell_state();
         };
@@ -161,9 +82,9 @@ class Node {
   }
 
   CyclePlan make_plan() {
-    joint_queue_.callAvailable();
+    robot_.take_joints();
     CyclePlan answer = session_.plan(time_now());
-    joint_queue_.callAvailable();
+    robot_.take_joints();
     session_.confirm_start(answer, time_now());
     plan_.publish(text_message(to_json(answer)));
     trajectory_.publish(message_of(send_doubtful_ ? answer.motion : safe_motion(answer)));
@@ -210,7 +131,7 @@ class Node {
   excavplan::DigCycleSession session_;
   bool send_doubtful_;
   ros::NodeHandle topics_, own_;
-  ros::CallbackQueue joint_queue_;
+  RobotListener robot_;
   std::vector<ros::Subscriber> subscribers_;
   std::string told_state_;
   bool told_early_ = false;
@@ -222,12 +143,5 @@ class Node {
 }  // namespace excavplan_ros
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "excavplan");
-  try {
-    excavplan_ros::Node node(ros::NodeHandle(), ros::NodeHandle("~"));
-    node.spin();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "excavplan_node: error: %s\n", error.what());
-    return 1;
-  }
+  return excavplan_ros::run_node<excavplan_ros::Node>(argc, argv, "excavplan");
 }

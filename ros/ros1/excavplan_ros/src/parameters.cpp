@@ -51,4 +51,11 @@ excavplan::NodeSettings settings_of(const ros::NodeHandle& node) {
   return settings;
 }
 
+excavplan::JobSessionSettings job_settings_of(const ros::NodeHandle& node) {
+  Parameters parameters(node);
+  excavplan::JobSessionSettings settings = excavplan::job_settings_of(parameters);
+  parameters.done();
+  return settings;
+}
+
 }  // namespace excavplan_ros

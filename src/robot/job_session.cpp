@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/robot/job_session.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <excavplan/job/job_motion.hpp>
+#include <excavplan/job/job_order.hpp>
+#include <excavplan/job/site_job.hpp>
+#include <excavplan/robot/dig_cycle_session.hpp>
+
+#include "base/check.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "results/plan_results.hpp"
+#include "robot/live_robot.hpp"
+
+namespace excavplan {
+namespace {
+
+JobSettings named(JobSettings job, const JobSessionSettings& settings) {
+  name_joints(settings.joint_names, job.site.machine.robot_joints, "joint_names: ");
+  for (const RobotJoint& joint : job.site.machine.robot_joints) {
+    require(!joint.name.empty(), "joint_names: a job needs one of each joint, the swing too");
+  }
+  return job;
+}
+
+LiveSettings live_settings(const Machine& machine, const JobSessionSettings& settings) {
+  return {machine, settings.site_frame, settings.site_from_scan, settings.machine_in_view,
+          settings.oldest_joints};
+}
+
+void check(const MotionReport& report) {
+  if (report.payload_mass) {
+    require(*report.payload_mass >= 0.0 && std::isfinite(*report.payload_mass), "the payload",
+            *report.payload_mass, "at least 0 kg");
+  }
+  if (report.joint_work) {
+    require(*report.joint_work > 0.0 && std::isfinite(*report.joint_work), "the work of the joints",
+            *report.joint_work, "above 0 J");
+  }
+  if (!report.base) return;
+  for (const double number : {report.base->x, report.base->y, report.base->heading}) {
+    require(std::isfinite(number), "the base", number, "finite");
+  }
+}
+
+}  // namespace
+
+void check(const JobSessionSettings& settings) {
+  require(!settings.folder.empty(), "folder: of the job is missing");
+  require_in("scans", static_cast<double>(settings.scans), 1.0, DigCycleSession::most_scans);
+  require(settings.oldest_joints > 0.0, "oldest_joints", settings.oldest_joints, "above 0");
+  check(settings.motion);
+}
+
+bool may_be_driven(const SessionStep& step) {
+  const bool begins_here = step.posture_known && !step.motion.points.empty();
+  return step.step.trustworthy && (begins_here || !step.step.moves_front());
+}
+
+struct JobSession::State {
+  State(JobSessionSettings given, JobSettings order)
+      : settings(std::move(given)),
+        job(SiteJob::resume(settings.folder, order)),
+        driven(named(std::move(order), settings)),
+        robot(live_settings(driven.site.machine, settings)) {}
+
+  void add_motion(SessionStep& answer) const;
+  Scan scan(const BasePose& base);
+
+  JobSessionSettings settings;
+  SiteJob job;
+  JobSettings driven;  ///< the order, with the joints as the settings name them
+  LiveRobot robot;
+  SessionStage stage = SessionStage::idle;
+  std::optional<MotionReport> reported;
+  LiveTime ended;                 ///< when the motion did
+  std::vector<LiveFrame> frames;  ///< of the scan
+};
+
+void JobSession::State::add_motion(SessionStep& answer) const {
+  JobStep& step = answer.step;
+  const std::optional<FrontJoints> start = robot.start();
+  answer.posture_known = start.has_value();
+  if (!start) {
+    step.warnings.emplace_back(WarningCode::posture_unknown,
+                               robot.joint_problem({}) + ": from where the motion is to begin");
+  } else if (const std::string moving = robot.moving_problem(); !moving.empty()) {
+    step.warnings.emplace_back(WarningCode::not_standing, "the machine may be moving: " + moving);
+  }
+  const auto refuse = [&](const std::string& why) {
+    step.warnings.emplace_back(WarningCode::no_motion, "the step has no motion: " + why);
+  };
+  try {
+    const auto motion = motion_of(driven, job.ground(), step, settings.motion, start);
+    if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
+      return refuse("something is in the way: " + blocked->message);
+    }
+    const auto& timed = std::get<Trajectory>(motion);
+    answer.motion = joint_motion(timed);
+    for (const Warning& each : timed.warnings) {
+      const bool is_told =
+          std::any_of(step.warnings.begin(), step.warnings.end(), [&](const Warning& told) {
+            return told.code == each.code && told.message == each.message;
+          });
+      if (!is_told) step.warnings.push_back(each);
+    }
+  } catch (const Error& error) {
+    refuse(error.what());
+  }
+}
+
+/// In the frame of the site.
+Scan JobSession::State::scan(const BasePose& base) {
+  bool averaged = true;
+  Scan seen = robot.scan_of(frames, "the scan", averaged);
+  if (!seen.machine) return seen;
+  seen.site_from_scan = base.site_from_machine().inverse().matrix();
+  seen = without_machine(std::move(seen));
+  seen.site_from_scan.setIdentity();
+  return seen;
+}
+
+JobSession::JobSession(JobSessionSettings settings) {
+  check(settings);
+  JobSettings order = load_order(settings.folder);
+  state_ = std::make_unique<State>(std::move(settings), std::move(order));
+}
+JobSession::~JobSession() = default;
+JobSession::JobSession(JobSession&&) noexcept = default;
+JobSession& JobSession::operator=(JobSession&&) noexcept = default;
+
+void JobSession::take(const RobotMessage& message) {
+  State& state = *state_;
+  std::vector<LiveFrame>& frames = state.frames;
+  std::optional<LiveFrame> points = state.robot.take(message);
+  if (points && state.stage == SessionStage::scanning && frames.size() < state.settings.scans) {
+    if (points->measured && state.ended && *points->measured < *state.ended) return;
+    frames.push_back(std::move(*points));
+  }
+  if (frames.empty()) return;
+  state.robot.settle(frames, false);
+  state.robot.settle_postures(frames, false);
+}
+
+SessionStep JobSession::plan(std::optional<std::int64_t> time) {
+  State& state = *state_;
+  leave();
+  state.robot.tell_time(time);
+  SessionStep answer;
+  answer.step = state.job.next();
+  if (answer.step.moves_front()) state.add_motion(answer);
+  for (const Warning& each : answer.step.warnings) {
+    if (each.ends_trust) answer.step.trustworthy = false;
+  }
+  if (answer.step.what != JobAction::stop) state.stage = SessionStage::driving;
+  return answer;
+}
+
+void JobSession::confirm_start(SessionStep& step, std::optional<std::int64_t> time) {
+  const State& state = *state_;
+  state_->robot.tell_time(time);
+  if (step.motion.points.empty() || !step.posture_known) return;
+  const std::string problem = state.robot.start_problem(step.motion);
+  if (problem.empty()) return;
+  step.step.trustworthy = false;
+  step.step.warnings.emplace_back(
+      WarningCode::start_left, "the machine may stand where the motion does not begin: " + problem);
+}
+
+void JobSession::report(const MotionReport& report, std::optional<std::int64_t> time) {
+  State& state = *state_;
+  const std::optional<JobStep> present = state.job.present();
+  const std::string told = "the report is of step " + std::to_string(report.step);
+  require(present.has_value(), told + ", and none is to be done: nothing is changed");
+  require(present->id == report.step,
+          told + ", the present one is " + std::to_string(present->id) + ": nothing is changed");
+  require(present->what != JobAction::stop, told + ", the end of the job: nothing is changed");
+  check(report);
+  leave();
+  state.robot.tell_time(time);
+  state.reported = report;
+  if (state.reported->base) state.reported->base->z = present->base.z;
+  state.ended = time;
+  if (present->what == JobAction::scan) state.stage = SessionStage::scanning;
+}
+
+std::optional<StepOutcome> JobSession::finish() {
+  State& state = *state_;
+  const bool scans = state.stage == SessionStage::scanning;
+  if (!state.reported || (scans && state.frames.size() < state.settings.scans)) return {};
+  StepOutcome outcome;
+  outcome.step = *state.job.present();
+  StepReport report;
+  report.payload_mass = state.reported->payload_mass;
+  report.joint_work = state.reported->joint_work;
+  report.stalled = state.reported->stalled;
+  report.base = state.reported->base;
+  try {
+    std::vector<LiveFrame> known = {LiveFrame()};
+    known.front().time = state.robot.now().value_or(0);
+    report.time = seconds_of(scans ? state.frames : known);
+    if (scans) report.scan = state.scan(outcome.step.base);
+    state.job.done(outcome.step.id, report);
+  } catch (...) {
+    leave();
+    throw;
+  }
+  leave();
+  if (scans) outcome.warnings = state.job.scan_warnings();
+  outcome.progress = state.job.progress();
+  return outcome;
+}
+
+void JobSession::leave() {
+  state_->stage = SessionStage::idle;
+  state_->reported.reset();
+  state_->ended.reset();
+  state_->frames.clear();
+}
+
+SessionStage JobSession::stage() const { return state_->stage; }
+std::size_t JobSession::scans() const { return state_->frames.size(); }
+std::size_t JobSession::scans_wanted() const { return state_->settings.scans; }
+JobProgress JobSession::progress() const { return state_->job.progress(); }
+const Machine& JobSession::machine() const { return state_->driven.site.machine; }
+
+std::string describe(const JobSession& session) {
+  switch (session.stage()) {
+    case SessionStage::driving:
+      return "driving";
+    case SessionStage::scanning:
+      return "scan " + count_text(session.scans(), session.scans_wanted());
+    default:
+      return "idle";
+  }
+}
+
+std::string to_json(const SessionStep& step) {
+  Json json = job_step_json(step.step);
+  json["trajectory_points"] = step.motion.points.size();
+  json["warnings"] = warnings_json(step.step.warnings);
+  return json_text(json);
+}
+
+}  // namespace excavplan
