@@ -207,7 +207,8 @@ BelievedDensity DualForm::at(const FieldPoints& points) const {
     }
     result.raw_percent.segment(first, size) =
         settings_.mean_percent + (covariances.matrix() * weights).array();
-    explained.noalias() = covariances.matrix() * triangle.triangularView<Eigen::Upper>();
+    if (digs > 0)
+      explained.noalias() = covariances.matrix() * triangle.triangularView<Eigen::Upper>();
     for (Eigen::Index i = 0; i < size; ++i) {
       const double depth = points.depths[points.layer[static_cast<std::size_t>(first + i)]];
       result.sd_percent(first + i) = field_.variance(depth);
@@ -232,6 +233,10 @@ BelievedMeans DualForm::means_of(const std::vector<FieldPart>& parts) const {
       result.covariance(i, j) = result.covariance(j, i) =
           field_.covariance(parts[static_cast<std::size_t>(j)], part);
     }
+  }
+  if (digs == 0) {  // a triangle without a first element may not be multiplied
+    result.raw_percent.setConstant(settings_.mean_percent);
+    return result;
   }
   const Eigen::VectorXd weights =
       gains_.topLeftCorner(rows, digs).transpose() * innovations_.head(rows);

@@ -203,6 +203,21 @@ TEST(DensityBelief, IsExactBayesWithAllReadingsAndSharedScans) {
   }
 }
 
+TEST(DensityBelief, WithoutDigsItIsAsBeforeAny) {
+  const BeliefSettings settings;
+  const DensityBelief belief(settings);
+  const BelievedDensity at = belief.at(some_places(3));
+  const BelievedMeans means = belief.means_of({{part(1.0, 0.0, 0.2)}, {part(2.0, 0.5, 0.4)}});
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    EXPECT_EQ(at.raw_percent(i), settings.mean_percent);
+    EXPECT_EQ(means.raw_percent(i), settings.mean_percent);
+    EXPECT_GT(at.sd_percent(i), 0.0);
+    EXPECT_GT(means.covariance(i, i), means.covariance(0, 1));
+  }
+  EXPECT_EQ(belief.common_states().law_error_percent.value, 0.0);
+  EXPECT_EQ(belief.log_likelihood(), 0.0);
+}
+
 TEST(DensityBelief, GivesMeansOfPartsWithTheirCovariance) {
   const std::vector<DigEvidence> digs = some_digs(9);
   const std::vector<GroundPlace> places = some_places(6);
