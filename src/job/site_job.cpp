@@ -43,6 +43,7 @@ constexpr int most_passes_of_shape = 16;     // likewise of a wide design, or on
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
+constexpr int rounds_of_ends = 2;            // of a wide design, after each was dug from once
 constexpr double far_end = 0.8;              // that may slope until it is dug from beyond [m]
 constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
@@ -118,11 +119,15 @@ struct SiteJob::State {
     }
     const JobStation last = stations.back();
     std::vector<JobStation> ends = beyond;
-    if (last.is_wide) {  // each once more, when the other is dug
-      std::copy_if(stations.begin(), stations.end(), std::back_inserter(ends),
+    if (last.is_wide) {  // each again, when the other is dug
+      std::vector<JobStation> near;
+      std::copy_if(stations.begin(), stations.end(), std::back_inserter(near),
                    [&](const JobStation& each) { return each.along == last.along; });
-      for (JobStation& each : ends) each.is_again = true;
-      ends.insert(ends.end(), beyond.begin(), beyond.end());
+      for (JobStation& each : near) each.is_again = true;
+      for (int round = 0; round < rounds_of_ends; ++round) {
+        ends.insert(ends.end(), near.begin(), near.end());
+        ends.insert(ends.end(), beyond.begin(), beyond.end());
+      }
     }
     stations.insert(stations.end(), ends.begin(), ends.end());
     const JobStation lookout;
