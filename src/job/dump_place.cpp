@@ -139,25 +139,36 @@ class HeapLayer {
         volume_(heaped_capacity(settings.site.machine)),
         cone_(heap_height(settings)) {}
 
-  Heap lay(const Vector2d& place) const {
+  Heap lay(const Vector2d& place) {
+    look_about(place);
     const auto at = cell_at(map_.target, place.x(), place.y());
     double low = surface_of(ground_, *at);
     double high = low + cone_;
     for (int i = 0; i < halvings; ++i) {
       const double top = 0.5 * (low + high);
-      (volume(place, top) < volume_ ? low : high) = top;
+      (volume(top) < volume_ ? low : high) = top;
     }
-    return described(place, high);
+    return described(high);
   }
 
  private:
-  /// The cells about a place, with their distance from it [m].
-  template <typename Visit>
-  void for_each_about(const Vector2d& place, double radius, Visit visit) const {
+  /// Ground about the place of a heap.
+  struct Spot {
+    Cell at;
+    double away;     ///< from the place [m]
+    double surface;  ///< [m]
+    bool may_hold;   ///< soil of the heap
+  };
+
+  void look_about(const Vector2d& place) {
+    constexpr double radius = farthest_run + edge_of_cut;
+    spots_.clear();
     for (double x = -radius; x <= radius; x += heap_step) {
       for (double y = -radius; y <= radius; y += heap_step) {
         const auto at = cell_at(map_.target, place.x() + x, place.y() + y);
-        if (at && !std::isnan(surface_of(ground_, *at))) visit(*at, std::hypot(x, y));
+        if (!at || std::isnan(surface_of(ground_, *at))) continue;
+        const double reach = std::max(std::abs(x), std::abs(y));
+        spots_.push_back({*at, std::hypot(x, y), surface(*at), reach <= farthest_run});
       }
     }
   }
@@ -168,29 +179,30 @@ class HeapLayer {
     return is_cut(map_, at) ? std::fmax(now, map_.before(at.row, at.col)) : now;
   }
 
-  double volume(const Vector2d& place, double top) const {
+  double volume(double top) const {
     double sum = 0.0;
-    for_each_about(place, farthest_run, [&](Cell at, double away) {
-      sum += std::max(0.0, top - repose_ * away - surface(at));
-    });
+    for (const Spot& spot : spots_) {
+      if (spot.may_hold) sum += std::max(0.0, top - repose_ * spot.away - spot.surface);
+    }
     return heap_step * heap_step * sum;
   }
 
-  Heap described(const Vector2d& place, double top) const {
+  Heap described(double top) const {
     Heap heap;
     heap.top = top;
     double all = 0.0;
-    for_each_about(place, farthest_run + edge_of_cut, [&](Cell at, double away) {
+    for (const Spot& spot : spots_) {
+      const Cell at = spot.at;
       const auto reaches = [&](double margin) {
-        return top - repose_ * std::max(0.0, away - margin) > surface(at);
+        return top - repose_ * std::max(0.0, spot.away - margin) > spot.surface;
       };
       const bool is_untouched = map_.untouched(at.row, at.col);
       if ((is_cut(map_, at) && reaches(edge_of_cut)) || (is_untouched && reaches(off_keep_out)))
         heap.is_allowed = false;
-      const double height = std::max(0.0, top - repose_ * away - surface(at));
+      const double height = std::max(0.0, top - repose_ * spot.away - spot.surface);
       all += height;
       if (!map_.dump(at.row, at.col)) heap.outside += height;
-    });
+    }
     heap.outside = all > 0.0 ? heap.outside / all : 1.0;
     return heap;
   }
@@ -200,6 +212,7 @@ class HeapLayer {
   double repose_;
   double volume_;
   double cone_;  ///< height of a bucket of soil on level ground [m]
+  std::vector<Spot> spots_;
 };
 
 bool is_near_area(const JobMap& map, const Vector2d& place, double near) {
@@ -213,36 +226,39 @@ bool is_near_area(const JobMap& map, const Vector2d& place, double near) {
   return false;
 }
 
-/// How far beside the areas soil may be laid.
-struct Beside {
-  double share;        ///< of a bucket
-  double away;         ///< [m]
-  double spare_reach;  ///< DumpRules
-};
-
-/// Where the least of a bucket comes to lie beside the areas.
+/// Where the least of a bucket comes to lie beside the areas; beyond most_outside and area_run only
+/// if that is allowed and there is no other place.
 std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap& map,
                                        const Terrain& ground, const BasePose& base,
-                                       const Beside& most) {
+                                       const DumpRules& rules) {
   const Machine& machine = settings.site.machine;
-  const HeapLayer layer(settings, map, ground);
+  HeapLayer layer(settings, map, ground);
+  const double farthest_away = rules.may_overflow ? farthest_off : area_run;
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(settings, base, most.spare_reach, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, rules.spare_reach, [&](const Vector2d& place, double turn) {
+    const bool has_room = best && !best->overflows;
     const auto at = cell_at(map.target, place.x(), place.y());
-    if (std::abs(turn) >= least || !at || std::isnan(ground.bank.z(at->row, at->col))) return;
-    if (is_cut(map, *at) || !is_near_area(map, place, most.away)) return;
+    if ((has_room && std::abs(turn) >= least) || !at || std::isnan(ground.bank.z(at->row, at->col)))
+      return;
+    if (is_cut(map, *at) || !is_near_area(map, place, has_room ? area_run : farthest_away)) return;
     const Heap heap = layer.lay(place);
     const double pin = heap.top + drop + machine.bucket_length;
     const double away = std::hypot(place.x() - base.x, place.y() - base.y);
     const double cost = outside_price * heap.outside + std::abs(turn) +
                         height_price * std::max(0.0, heap.top - base.z);
-    if (!heap.is_allowed || heap.outside > most.share || cost >= least ||
-        away > pin_reach(machine, pin - base.z))
-      return;
+    if (!heap.is_allowed || away > pin_reach(machine, pin - base.z)) return;
+    const bool overflows = heap.outside > most_outside || !is_near_area(map, place, area_run);
+    if (overflows && (has_room || !rules.may_overflow)) return;
+    const bool is_first_with_room = !overflows && !has_room;
+    if (cost >= least && !is_first_with_room) return;
     least = cost;
-    best = DumpPlace{
-        {place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false, heap.outside};
+    best = DumpPlace{{place.x(), place.y(), pin},
+                     turn,
+                     std::max(0.0, pin - base.z),
+                     false,
+                     heap.outside,
+                     overflows};
   });
   return best;
 }
@@ -300,9 +316,7 @@ std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& m
     best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
   });
   if (best) return best;
-  best = least_outside(settings, map, ground, base, {most_outside, area_run, spare});
-  if (best || !rules.may_overflow) return best;
-  return least_outside(settings, map, ground, base, {1.0, farthest_off, spare});
+  return least_outside(settings, map, ground, base, rules);
 }
 
 }  // namespace excavplan

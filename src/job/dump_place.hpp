@@ -24,7 +24,8 @@ struct DumpPlace {
   double swing = 0.0;   ///< to it from the machine's heading, to the left [rad]
   double height = 0.0;  ///< of the pin over the ground under the machine [m]
   bool in_truck = false;
-  double outside = 0.0;  ///< share of a bucket that comes to lie beside the dump areas [-]
+  double outside = 0.0;    ///< share of a bucket that comes to lie beside the dump areas [-]
+  bool overflows = false;  ///< the areas are full: beside them, as DumpRules::may_overflow
 };
 
 /// A dump_areas_full, if most of a bucket comes to lie beside them.

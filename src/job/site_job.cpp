@@ -586,7 +586,7 @@ std::optional<JobStation> SiteJob::State::missed_place(const JobProgress& now) c
   const JobStation& station = stations[record.station];
   if (station.is_lookout() || !(record.off_place > same_place)) return std::nullopt;
   const auto place = next_place(now);
-  if (!place) return place;
+  if (!place) return std::nullopt;
   const BasePose base = base_of(*place);
   const bool is_undone = station.leaves_passes ? !is_dug_out(base) : wants_passes(base);
   return is_undone ? place : std::nullopt;

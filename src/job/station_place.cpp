@@ -111,10 +111,14 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
     moved.beside += shift.y();
     if (!can_stand_now(on, frame, moved)) continue;
     const BasePose base = base_at(frame, moved, on.now, on.settings.site.machine);
+    const auto dump = dump_place(on.settings, on.map, on.now, base, {0.0, true});
+    if (!dump) continue;
+    if (dump->overflows) {
+      if (!overflowing) overflowing = moved;
+      continue;
+    }
     if (dump_place(on.settings, on.map, on.now, base, {spare_reach})) return moved;
-    if (!meagre && dump_place(on.settings, on.map, on.now, base)) meagre = moved;
-    if (!overflowing && dump_place(on.settings, on.map, on.now, base, {0.0, true}))
-      overflowing = moved;
+    if (!meagre) meagre = moved;
   }
   return meagre ? meagre : overflowing;
 }
