@@ -338,7 +338,8 @@ class Job(unittest.TestCase):
         with JobNode(folder, scans=2) as node:
             moved = self.do_move(node)
             self.assertTrue(moved.success and moved.trustworthy, moved.message)
-            self.assertEqual(node.states(), ["planning", "driving"])
+            # A client misses what comes before it knows that its goal was accepted.
+            self.assertIn(node.states(), (["planning", "driving"], ["driving"]))
             self.assertEqual(json.loads(moved.progress_json)["moves"], 1)
 
             node.stand(self.STANDS)

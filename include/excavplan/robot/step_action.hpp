@@ -37,6 +37,7 @@ struct StepAnswer {
   std::string progress_json;      ///< of the job
 };
 
+/// How a goal ends.
 enum class StepEnd { succeeded, aborted, cancelled };
 
 /// What a node sends, and what it is asked for.
