@@ -59,8 +59,9 @@ constexpr double heap_share = 1.6;           // likewise of cells of which hardl
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double surely_in_shape = 0.9;      // share of what is allowed, of a wide design
 constexpr double well_seen = 0.992;          // of it, so that no more is looked for
-constexpr int most_blocked = 4;  // digs from one place whose way is blocked, before it is left
-constexpr int most_softer = 4;   // deviations of the strength below its mean that are tried
+constexpr int most_blocked = 4;   // digs from one place whose way is blocked, before it is left
+constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
+constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
 constexpr double after_stall = 0.7;          // of the depth of a cut
 constexpr double after_success = 1.1;        // likewise
@@ -331,14 +332,22 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
   return best_dig(task);
 }
 
-/// What would be driven into something is laid aside for another dig from here.
+/// What would be driven into something is laid aside for another dig from here, and so is what is
+/// not to be trusted, if there is another one.
 std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
-  for (int tries = 0; tries < most_blocked; ++tries) {
+  std::optional<std::size_t> before_doubtful;
+  int doubtful = 0;
+  for (int tries = 0; tries < most_blocked && doubtful < most_doubtful; ++tries) {
     auto step = best_step(finishing);
-    if (!step || step->reason.empty()) return step;
+    if (!step) break;
+    const bool is_blocked = !step->reason.empty();
+    if (step->trustworthy && !is_blocked) return step;
+    if (!is_blocked && doubtful++ == 0) before_doubtful = record.barren.size();
     lay_aside(*step);
   }
-  return std::nullopt;
+  if (!before_doubtful) return std::nullopt;
+  record.barren.resize(*before_doubtful);
+  return best_step(finishing);
 }
 
 std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
