@@ -33,7 +33,8 @@ LiveSettings live_settings(const Machine& machine, const JobSessionSettings& set
           settings.oldest_joints};
 }
 
-void check(const MotionReport& report) {
+/// @param step  it is of
+void check(const MotionReport& report, const JobStep& step) {
   if (report.payload_mass) {
     require(*report.payload_mass >= 0.0 && std::isfinite(*report.payload_mass), "the payload",
             *report.payload_mass, "at least 0 kg");
@@ -41,6 +42,12 @@ void check(const MotionReport& report) {
   if (report.joint_work) {
     require(*report.joint_work > 0.0 && std::isfinite(*report.joint_work), "the work of the joints",
             *report.joint_work, "above 0 J");
+  }
+  if (!step.digs()) {
+    const std::string nothing_dug = "step " + std::to_string(step.id) + " is a " + name(step.what) +
+                                    ", in which nothing is dug: it has no ";
+    require(report.payload_mass.value_or(0.0) == 0.0, nothing_dug + "payload");
+    require(!report.stalled, nothing_dug + "stall");
   }
   if (!report.base) return;
   for (const double number : {report.base->x, report.base->y, report.base->heading}) {
@@ -180,7 +187,7 @@ void JobSession::report(const MotionReport& report, std::optional<std::int64_t> 
   require(present->id == report.step,
           told + ", the present one is " + std::to_string(present->id) + ": nothing is changed");
   require(present->what != JobAction::stop, told + ", the end of the job: nothing is changed");
-  check(report);
+  check(report, *present);
   leave();
   state.robot.tell_time(time);
   state.reported = report;

@@ -172,6 +172,14 @@ TEST(JobSession, AReportThatDoesNotFitChangesNothing) {
               session.report({1, {}, {}, false, BasePose{none, 0.0, 0.0, 0.0}});
             }).find("the base is"),
             std::string::npos);
+  EXPECT_EQ(error_of([&] {
+              session.report({1, 310.0, {}, false, {}});
+            }),
+            "step 1 is a move, in which nothing is dug: it has no payload");
+  EXPECT_EQ(error_of([&] {
+              session.report({1, {}, {}, true, {}});
+            }),
+            "step 1 is a move, in which nothing is dug: it has no stall");
   EXPECT_FALSE(session.finish());
   EXPECT_EQ(describe(session), "driving");
   EXPECT_EQ(robot.of.record(), record);
