@@ -149,15 +149,21 @@ TEST(JobStations, AWideDesignIsDugFromTheMiddleAndShapedFromItsSides) {
   EXPECT_FALSE(stations_beyond(wider.frame(), wider.settings).back().leaves_passes);
 }
 
-TEST(JobStations, NoLaneRunsAlongAWallTooSteepToCount) {
+/// A pit 1.2 m deep whose walls lean back.
+HandMadeJob pit(double batter) {
   HandMadeJob job;
   DesignWords words;
   words.length = 10.0;
   words.floor_width = 3.6;
   words.depth = 1.2;
+  words.batter = batter;
+  job.settings.surface = design_of_words(words, job.ground.bank);
+  return job;
+}
+
+TEST(JobStations, NoLaneRunsAlongAWallTooSteepToCount) {
   for (const double batter : {0.5, 1.0}) {  // 63 and 45 degrees
-    words.batter = batter;
-    job.settings.surface = design_of_words(words, job.ground.bank);
+    const HandMadeJob job = pit(batter);
     const JobFrame frame = job.frame();
     const double half = batter < 0.6 ? 1.8 : 1.8 + 1.2 * batter;
     EXPECT_NEAR(frame.left, half, 0.08) << batter;
@@ -166,13 +172,7 @@ TEST(JobStations, NoLaneRunsAlongAWallTooSteepToCount) {
 }
 
 TEST(JobStations, ABenchIsAsWideAsTheDesignIsThere) {
-  HandMadeJob job;
-  DesignWords words;
-  words.length = 10.0;
-  words.floor_width = 3.6;
-  words.depth = 1.2;
-  words.batter = 0.5;
-  job.settings.surface = design_of_words(words, job.ground.bank);
+  const HandMadeJob job = pit(0.5);
   const JobMap map = job.map();
   const JobFrame frame = job.frame();
   const Machine& machine = job.settings.site.machine;
