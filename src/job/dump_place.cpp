@@ -233,7 +233,6 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
                                        const DumpRules& rules) {
   const Machine& machine = settings.site.machine;
   HeapLayer layer(settings, map, ground);
-  const double farthest_away = rules.may_overflow ? farthest_off : area_run;
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
   for_each_place(settings, base, rules.spare_reach, [&](const Vector2d& place, double turn) {
@@ -241,15 +240,18 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
     const auto at = cell_at(map.target, place.x(), place.y());
     if ((has_room && std::abs(turn) >= least) || !at || std::isnan(ground.bank.z(at->row, at->col)))
       return;
-    if (is_cut(map, *at) || !is_near_area(map, place, has_room ? area_run : farthest_away)) return;
+    if (is_cut(map, *at)) return;
+    const bool runs_in = is_near_area(map, place, area_run);
+    const bool may_be_off = rules.may_overflow && !has_room;
+    if (!runs_in && !(may_be_off && is_near_area(map, place, farthest_off))) return;
     const Heap heap = layer.lay(place);
     const double pin = heap.top + drop + machine.bucket_length;
     const double away = std::hypot(place.x() - base.x, place.y() - base.y);
     const double cost = outside_price * heap.outside + std::abs(turn) +
                         height_price * std::max(0.0, heap.top - base.z);
     if (!heap.is_allowed || away > pin_reach(machine, pin - base.z)) return;
-    const bool overflows = heap.outside > most_outside || !is_near_area(map, place, area_run);
-    if (overflows && (has_room || !rules.may_overflow)) return;
+    const bool overflows = heap.outside > most_outside || !runs_in;
+    if (overflows && !may_be_off) return;
     const bool is_first_with_room = !overflows && !has_room;
     if (cost >= least && !is_first_with_room) return;
     least = cost;
