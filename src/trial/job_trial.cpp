@@ -19,6 +19,7 @@ void count(const TrialStep& at, JobTrial& trial) {
   trial.moves += at.step.what == JobAction::move ? 1 : 0;
   trial.scans += at.done.report.scan ? 1 : 0;
   trial.stalls += at.done.stall ? 1 : 0;
+  trial.untrusted += at.step.trustworthy ? 0 : 1;
   trial.energy += at.done.energy;
   trial.time += at.done.time;
   trial.planning_time += at.planning_time;

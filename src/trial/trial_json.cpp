@@ -34,7 +34,7 @@ Json dig_json(const TrialStep& at) {
   return line;
 }
 
-Json line_of(const TrialStep& at) {
+Json action_json(const TrialStep& at) {
   switch (at.step.what) {
     case JobAction::dig:
     case JobAction::finish:
@@ -54,6 +54,12 @@ Json line_of(const TrialStep& at) {
       return line;
     }
   }
+}
+
+Json line_of(const TrialStep& at) {
+  Json line = action_json(at);
+  line["trustworthy"] = at.step.trustworthy;
+  return line;
 }
 
 }  // namespace
@@ -79,6 +85,7 @@ nlohmann::ordered_json trial_json(const JobTrial& trial) {
   json["moves"] = trial.moves;
   json["scans"] = trial.scans;
   json["stalls"] = trial.stalls;
+  json["untrusted_steps"] = trial.untrusted;
   json["energy_kj"] = 1e-3 * trial.energy;
   json["energy_kj_per_design_m3"] = 1e-3 * trial.energy_per_design();
   json["time_min"] = trial.time / 60.0;
@@ -115,6 +122,7 @@ std::string log_end(const JobTrial& trial) {
   return json_text(Json{{"type", "end"},
                         {"reason", trial.reason},
                         {"seen", trial.score.seen},
+                        {"untrusted_steps", trial.untrusted},
                         {"finished", trial.score.finished}}) +
          '\n';
 }

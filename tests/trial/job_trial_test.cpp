@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/trial/job_trial.hpp>
 
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
 #include <excavplan/trial/job_reference.hpp>
 #include <excavplan/trial/plain_planners.hpp>
 
 #include "support/errors.hpp"
 #include "support/plain_site_folder.hpp"
+#include "trial/trial_json.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -93,6 +98,34 @@ TEST(JobTrial, APlannerThatNeverStopsIsStopped) {
   EXPECT_EQ(trial.reason, "too many steps");
   EXPECT_FALSE(trial.stopped);
   EXPECT_EQ(trial.scans, 3);
+}
+
+TEST(JobTrial, StepsThatAreNotTrustedAreDoneCountedAndLogged) {
+  class Doubts : public JobPlanner {
+   public:
+    JobStep next() override {
+      JobStep step;
+      step.what = told++ < 3 ? JobAction::wait : JobAction::stop;
+      step.trustworthy = told == 2;
+      return step;
+    }
+    void done(long long, const StepReport&) override {}
+    int told = 0;
+  };
+  Doubts planner;
+  TrialOptions options;
+  std::string log;
+  options.each = [&](const TrialStep& step) { log += log_lines(step); };
+  const JobTrial trial = run_trial(PlainSiteFolder().read(), zx120(), planner, options);
+  EXPECT_EQ(trial.untrusted, 2);
+  EXPECT_EQ(trial_json(trial)["untrusted_steps"], 2);
+  EXPECT_EQ(nlohmann::json::parse(log_end(trial))["untrusted_steps"], 2);
+  std::istringstream lines(log);
+  for (const bool is_trusted : {false, true, false}) {
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(nlohmann::json::parse(line)["trustworthy"], is_trusted) << line;
+  }
 }
 
 TEST(JobTrial, ADesignWithoutWordsHasNoPlainPolicy) {

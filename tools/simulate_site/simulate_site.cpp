@@ -82,7 +82,8 @@ std::vector<std::string> lines_of(const JobTrial& trial) {
               percent(score.overdig_percent()) + ", spill " + percent(score.spill_percent()),
           std::to_string(trial.digs) + " digs, " + std::to_string(trial.finishing) +
               " of them finishing, " + std::to_string(trial.moves) + " moves, " +
-              std::to_string(trial.scans) + " scans, " + std::to_string(trial.stalls) + " stalls",
+              std::to_string(trial.scans) + " scans, " + std::to_string(trial.stalls) +
+              " stalls, " + std::to_string(trial.untrusted) + " steps not trusted",
           readable(1e-3 * trial.energy_per_design(), 4) + " kJ per m^3 of the design, " +
               readable(trial.time / 60.0, 3) + " min; planned in " +
               readable(trial.planning_time, 3) + " s",

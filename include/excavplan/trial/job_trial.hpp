@@ -42,6 +42,7 @@ struct JobTrial {
   int moves = 0;                 ///< of the machine
   int scans = 0;                 ///< that were taken
   int stalls = 0;                ///< among the digs
+  int untrusted = 0;             ///< steps done though JobStep::trustworthy is false
   double energy = 0.0;           ///< of cycles and moves [J]
   double time = 0.0;             ///< of cycles, moves, scans and waits [s]
   double planning_time = 0.0;    ///< by the clock [s]
