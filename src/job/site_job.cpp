@@ -84,24 +84,6 @@ SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
   return event;
 }
 
-/// What no such step can have led to is of another one.
-void require_report(const JobStep& step, const StepReport& report) {
-  const std::string of = " of step " + std::to_string(step.id) + ", " + name(step.what);
-  const double lifted = report.payload_mass.value_or(0.0);
-  const double work = report.joint_work.value_or(0.0);
-  require(std::isfinite(lifted), "payload mass" + of, lifted, "finite");
-  require(std::isfinite(work), "work of the joints" + of, work, "finite");
-  if (report.base) {
-    const BasePose& base = *report.base;
-    for (const double number : {base.x, base.y, base.z, base.heading})
-      require(std::isfinite(number), "base" + of, number, "finite");
-  }
-  if (step.digs()) return;
-  require(lifted == 0.0, "payload mass" + of, lifted, "0 or left out, as nothing is dug in it");
-  require(!report.stalled, "step " + std::to_string(step.id) + " is a " + name(step.what) +
-                               " and cannot have stalled: only a dig can");
-}
-
 }  // namespace
 
 struct SiteJob::State {
@@ -630,7 +612,7 @@ JobStep SiteJob::State::leave() {
     return go_to(*place);
   }
   if (record.carried) return step_of(JobAction::stop, "the soil in the bucket has no place");
-  if (now.is_finished) return step_of(JobAction::stop, "finished");
+  if (now.is_finished) return step_of(JobAction::stop, finished_reason);
   const std::string found = ": 95 % lie within " + readable(1e3 * now.p95, 2) + " mm, " +
                             readable(100.0 * now.beyond_twice, 2) +
                             " % beyond twice the tolerance, " + readable(100.0 * now.seen, 3) +
@@ -717,8 +699,9 @@ void SiteJob::State::end_step(const StepReport& report) {
   } else {
     ground.expect(step, record.learning.height_bias.mean);
   }
+  if (report.base) record.base = *report.base;
   if (step.what == JobAction::move) {
-    record.base = report.base.value_or(step.base);
+    if (!report.base) record.base = step.base;
     const double off = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
     record.off_place = record.off_place > 0.0 ? 0.0 : off;
     record.has_arrived = true;

@@ -218,7 +218,7 @@ class PlainPlanner : public JobPlanner {
     const double to = base_along() - policy_.station;
     if (to + far_end() > least_along_ + 0.2) return move_to(to);
     JobStep stop = step_of(JobAction::stop);
-    stop.reason = "finished";
+    stop.reason = finished_reason;
     return stop;
   }
 

@@ -101,7 +101,7 @@ TEST(SiteJob, TheLastChangeIsTakenBack) {
     EXPECT_EQ(of.record(), before);
     EXPECT_EQ(job.progress().left_volume, left);
     expect_same(job.next(), step);
-    EXPECT_NE(error_of([&] { job.undo(); }), "");
+    EXPECT_NE(error_of([&] { job.undo(); }), "no error");
     job.done(step.id, of.report);
   } while (!of.report.scan);
 }
@@ -129,7 +129,7 @@ TEST(SiteJob, AScanThatIsRefusedChangesNothing) {
   const std::string record = of.record();
   const double left = job.progress().left_volume;
   EXPECT_NE(error_of([&] { job.done(step.id, twice); }).find("already"), std::string::npos);
-  EXPECT_NE(error_of([&] { job.look(*twice.scan, twice.time); }), "");
+  EXPECT_NE(error_of([&] { job.look(*twice.scan, twice.time); }), "no error");
   EXPECT_EQ(of.record(), record);
   EXPECT_EQ(job.progress().left_volume, left);
   expect_same(job.next(), step);
@@ -169,19 +169,57 @@ TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
   const double nan = std::nan("");
   ASSERT_EQ(begun.job.next().what, JobAction::move);
   EXPECT_EQ(refusal([](StepReport& each) { each.payload_mass = 310.0; }),
-            "payload mass of step 1, move is 310, must be 0 or left out, as nothing is dug in it");
+            "payload mass of step 1, move [kg] is 310, must be 0 or left out, as nothing is dug in "
+            "it");
   EXPECT_EQ(refusal([](StepReport& each) { each.stalled = true; }),
             "step 1 is a move and cannot have stalled: only a dig can");
-  EXPECT_EQ(refusal([&](StepReport& each) {
-              each.base = BasePose{0.0, nan};
-            }),
-            "base of step 1, move is nan, must be finite");
+  for (const double bad : {nan, 1e13, -1e13}) {
+    for (double BasePose::*part : {&BasePose::x, &BasePose::y, &BasePose::z}) {
+      const std::string text = refusal([&](StepReport& each) {
+        each.base = BasePose();
+        (*each.base).*part = bad;
+      });
+      EXPECT_EQ(text.rfind("base of step 1, move [m] is ", 0), 0U) << text;
+    }
+    const std::string turned = refusal([&](StepReport& each) {
+      each.base = BasePose{0.0, 0.0, 0.0, bad};
+    });
+    EXPECT_EQ(turned.rfind("heading of step 1, move [rad] is ", 0), 0U) << turned;
+  }
   begun.of.make_step(begun.job);
   ASSERT_EQ(begun.job.next().what, JobAction::dig);
+  for (const double bad : {nan, -1.0, 1e13}) {
+    EXPECT_NE(refusal([&](StepReport& each) { each.payload_mass = bad; }), "no error") << bad;
+    EXPECT_NE(refusal([&](StepReport& each) { each.joint_work = bad; }), "no error") << bad;
+  }
   EXPECT_EQ(refusal([&](StepReport& each) { each.payload_mass = nan; }),
-            "payload mass of step 2, dig is nan, must be finite");
-  EXPECT_EQ(refusal([&](StepReport& each) { each.joint_work = nan; }),
-            "work of the joints of step 2, dig is nan, must be finite");
+            "payload mass of step 2, dig [kg] is nan, must be in 0 .. 1000000");
+  EXPECT_EQ(refusal([&](StepReport& each) { each.time = nan; }),
+            "time of step 2, dig [s] is nan, must be finite");
+}
+
+TEST(SiteJob, AJobWithTheMostThatIsBelievedCanBeReadAgain) {
+  BegunJob begun(1);
+  StepReport report;
+  report.payload_mass = 1e6;
+  report.joint_work = 1e12;
+  report.base = BasePose{1e9, -1e9, 1e9, 1e3};
+  ASSERT_EQ(begun.job.next().what, JobAction::dig);
+  begun.job.done(begun.job.next().id, report);
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  EXPECT_EQ(begun.job.progress().payload_mass, 1e6);
+}
+
+TEST(SiteJob, WhereTheMachineStandsIsTakenOfAnyStep) {
+  BegunJob begun(1);
+  const JobStep dig = begun.job.next();
+  ASSERT_EQ(dig.what, JobAction::dig);
+  StepReport report;
+  report.base = dig.base;
+  report.base->x -= 0.1;  // it slid
+  begun.job.done(dig.id, report);
+  EXPECT_EQ(begun.job.next().base.x, dig.base.x - 0.1);
 }
 
 TEST(SiteJob, APayloadOfNothingMayBeReportedOfAMove) {

@@ -106,7 +106,7 @@ Outcome work_next(const JobInputs& inputs, Console& /*console*/) {
   outcome.warnings = step.warnings;
   outcome.trustworthy = step.trustworthy;
   if (step.what == JobAction::stop) {
-    outcome.exit_code = step.reason == "finished" ? finished_code : stuck_code;
+    outcome.exit_code = step.ends_finished() ? finished_code : stuck_code;
   }
   return outcome;
 }

@@ -71,7 +71,10 @@ struct JobStep {
 
   bool digs() const { return excavplan::digs(what); }  ///< whether it is a dig, for volume or shape
   bool moves_front() const { return digs() || dumps_first; }  ///< whether boom, arm or bucket move
+  bool ends_finished() const;  ///< a stop, as the ground is within the tolerance
 };
+/// The reason of such a stop.
+inline constexpr const char* finished_reason = "finished";
 
 /// What became of a step.
 struct StepReport {
@@ -80,8 +83,14 @@ struct StepReport {
   std::optional<double> payload_mass;  ///< by the scale [kg]
   std::optional<double> joint_work;    ///< of the joints over the whole cycle [J]
   bool stalled = false;                ///< the machine could not finish the path
-  std::optional<BasePose> base;        ///< where the machine stands after a move
+  std::optional<BasePose> base;        ///< where the machine stands now; nothing: as the step says
 };
+
+/// What no such step can have led to is of another one.
+/// @throws Error (bad_input) if a number is not finite, a mass or a work is below 0, one is larger
+/// than any machine's (1e6 kg, 1e12 J) or a base beyond 1e9 m, or a payload or a stall is of a step
+/// that does not dig
+void require_report(const JobStep& step, const StepReport& report);
 
 /// Who decides the steps: SiteJob, or another policy that is to be compared with it.
 class JobPlanner {
