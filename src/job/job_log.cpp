@@ -295,7 +295,7 @@ void JobLog::append(JobEvent event, const JobHistory::Ground& after, const JobRe
 void JobLog::cut(const JobRecord& record) {
   std::size_t kept = marks_.size();
   while (kept > 0 && !marks_[kept - 1].is_within(record)) --kept;
-  if (kept == marks_.size()) return;
+  if (kept == recorder_.history().events.size()) return;
   marks_.resize(kept);
   recorder_.cut(kept);
   write_own_tail(path_, marks_.empty() ? begun_ : marks_.back().end, {});

@@ -316,8 +316,11 @@ void save_earlier_record(const std::string& folder, const JobRecord& record) {
 
 JobRecord earlier_record(const std::string& folder) {
   const std::string path = earlier_path(folder);
-  require(std::filesystem::exists(path), folder + ": there is no step to take back");
+  const std::string none = folder + ": there is no step to take back";
+  require(std::filesystem::exists(path), none);
   JobRecord record = read_record(path);
+  const JobRecord now = load_record(folder);  // the same, if a change could not be written
+  require(record.last_step < now.last_step || record.progress.scans < now.progress.scans, none);
   save_record(folder, record);
   std::filesystem::remove(path);
   return record;

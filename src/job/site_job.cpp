@@ -211,18 +211,19 @@ struct SiteJob::State {
   void save_changed(const JobRecord& before, const JobStep& step, const StepReport& report);
   void log_from(const GroundState& of_first);
   void restore();
-  /// A report that is refused changes nothing.
+  /// What fails, or cannot be written, changes nothing.
   template <typename Change>
-  void or_as_before(const JobRecord& before, Change change) {
+  void keep_whole(Change change) {
+    require_whole();
     try {
       change();
     } catch (...) {
-      record = before;
-      hang_design();
-      restore();
+      go_back();
       throw;
     }
   }
+  void go_back() noexcept;
+  void require_whole() const;
   std::string first_file() const { return folder + '/' + first_ground_file; }
 
   std::string folder;
@@ -236,6 +237,7 @@ struct SiteJob::State {
   bool can_leave_end = false;  ///< to a place beyond
   JobRecord record;
   std::optional<JobLog> log;
+  bool is_whole = true;  ///< all of it is as the folder holds it
 };
 
 JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
@@ -748,6 +750,28 @@ void SiteJob::State::restore() {
   for (const JobStep& dig : record.unseen) ground.expect(dig, record.learning.height_bias.mean);
 }
 
+/// To what the folder holds. Where that cannot be read, or mended, nothing is done from then on.
+void SiteJob::State::go_back() noexcept {
+  is_whole = false;
+  try {
+    record = load_record(folder);
+    hang_design();
+    restore();
+    is_whole = true;
+  } catch (const std::exception&) {
+    return;
+  }
+}
+
+void SiteJob::State::require_whole() const {
+  if (is_whole) return;
+  throw Error(ErrorKind::bad_file,
+              folder +
+                  ": the last change failed, and what was there before cannot be restored: "
+                  "once the folder can be written to, go on with the job as it was after a "
+                  "kill");
+}
+
 SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SiteJob::~SiteJob() = default;
 SiteJob::SiteJob(SiteJob&&) noexcept = default;
@@ -790,46 +814,61 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
 }
 
 JobStep SiteJob::next() {
-  JobRecord& record = state_->record;
+  State& state = *state_;
+  state.require_whole();
+  JobRecord& record = state.record;
   if (!record.present) {
-    record.present = state_->decide();
-    state_->save();
+    state.keep_whole([&] {
+      record.present = state.decide();
+      state.save();
+    });
   }
   return *record.present;
 }
 
-std::optional<JobStep> SiteJob::present() const { return state_->record.present; }
+std::optional<JobStep> SiteJob::present() const {
+  state_->require_whole();
+  return state_->record.present;
+}
 
 void SiteJob::done(long long step, const StepReport& report) {
+  state_->require_whole();
   const std::optional<JobStep>& present = state_->record.present;
   if (!present || present->id != step || present->what == JobAction::stop) return;
   require_report(*present, report);
   const JobRecord before = state_->record;
-  state_->or_as_before(before, [&] { state_->end_step(report); });
-  state_->save_changed(before, *before.present, report);
+  state_->keep_whole([&] {
+    state_->end_step(report);
+    state_->save_changed(before, *before.present, report);
+  });
 }
 
 void SiteJob::look(const Scan& scan, double time) {
-  JobRecord& record = state_->record;
+  State& state = *state_;
+  JobRecord& record = state.record;
   const JobRecord before = record;
   StepReport report;
   report.scan = scan;
   report.time = time;
-  state_->or_as_before(before, [&] { state_->take_scan(report); });
-  if (record.present && record.present->what != JobAction::move) {
-    record.last_step = record.present->id;
-    record.present.reset();
-    record.planned.reset();
-  }
-  JobStep unasked = state_->step_of(JobAction::scan);
-  unasked.id = 0;
-  state_->save_changed(before, unasked, report);
+  state.keep_whole([&] {
+    state.take_scan(report);
+    if (record.present && record.present->what != JobAction::move) {
+      record.last_step = record.present->id;
+      record.present.reset();
+      record.planned.reset();
+    }
+    JobStep unasked = state.step_of(JobAction::scan);
+    unasked.id = 0;
+    state.save_changed(before, unasked, report);
+  });
 }
 
 void SiteJob::undo() {
-  state_->record = earlier_record(state_->folder);
-  state_->hang_design();
-  state_->restore();
+  state_->keep_whole([&] {
+    state_->record = earlier_record(state_->folder);
+    state_->hang_design();
+    state_->restore();
+  });
 }
 
 const std::vector<Warning>& SiteJob::scan_warnings() const { return state_->ground.warnings(); }

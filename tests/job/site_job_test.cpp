@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/job/site_job.hpp>
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include <excavplan/job/job_motion.hpp>
 
@@ -220,6 +225,113 @@ TEST(SiteJob, WhereTheMachineStandsIsTakenOfAnyStep) {
   report.base->x -= 0.1;  // it slid
   begun.job.done(dig.id, report);
   EXPECT_EQ(begun.job.next().base.x, dig.base.x - 0.1);
+}
+
+/// No file that is written then grows beyond so many bytes, as on a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit = {bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = SIG_DFL;
+};
+
+/// Makes a change with ever more room, until it can be written; before that all is as it was.
+void expect_whole(const TrenchJob& of, SiteJob& job, const std::function<void()>& change) {
+  const std::string record = of.record();
+  const std::optional<JobStep> step = job.present();
+  const double left = job.progress().left_volume;
+  const std::size_t events = job.history().events.size();
+  int failures = 0;
+  for (rlim_t room = 0; room < 1U << 24U; room = 4 * room + 1000, ++failures) {
+    const std::string problem = [&] {
+      const FullDisk full(room);
+      return error_of(change, ErrorKind::bad_file);
+    }();
+    if (problem == "no error") break;
+    EXPECT_NE(problem.find("cannot be written"), std::string::npos) << problem;
+    ASSERT_EQ(of.record(), record) << room;
+    ASSERT_EQ(job.progress().left_volume, left) << room;
+    ASSERT_EQ(job.history().events.size(), events) << room;
+    ASSERT_EQ(job.present().has_value(), step.has_value()) << room;
+    if (step) expect_same(*job.present(), *step);
+  }
+  EXPECT_GE(failures, 2);
+}
+
+TEST(SiteJob, AChangeThatCannotBeWrittenIsNone) {
+  BegunJob begun;
+  SiteJob& job = begun.job;
+  expect_whole(begun.of, job, [&] { (void)job.next(); });
+  const JobStep dig = job.next();
+  ASSERT_EQ(dig.what, JobAction::dig);
+  begun.of.report = begun.of.truth.execute(dig).report;
+  expect_whole(begun.of, job, [&] { job.done(dig.id, begun.of.report); });
+  expect_whole(begun.of, job, [&] { job.undo(); });
+}
+
+TEST(SiteJob, AScanThatCannotBeWrittenIsNone) {
+  BegunJob begun(1);
+  SiteJob& job = begun.job;
+  (void)job.next();
+  const Scan scan = begun.of.truth.scan();
+  const auto look = [&] { job.look(scan, begun.of.truth.time() + 1.0); };
+  const std::string last_but_one = begun.of.path() + "/job-before.json";
+  std::filesystem::remove(last_but_one);
+  std::filesystem::create_directory(last_but_one);
+  EXPECT_NE(error_of(look, ErrorKind::bad_file).find("cannot be written"), std::string::npos);
+  std::filesystem::remove(last_but_one);
+  EXPECT_EQ(job.progress().scans, 0);
+  expect_whole(begun.of, job, look);
+  EXPECT_EQ(job.progress().scans, 1);
+}
+
+TEST(SiteJob, WhatCouldNotBeWrittenIsNotTakenBack) {
+  BegunJob begun;
+  const JobStep dig = begun.job.next();
+  {
+    const FullDisk full(static_cast<rlim_t>(begun.of.record().size()));
+    EXPECT_NE(error_of([&] { begun.job.done(dig.id, {}); }, ErrorKind::bad_file), "no error");
+  }
+  ASSERT_EQ(content_of(begun.of.path() + "/job-before.json"), begun.of.record());
+  EXPECT_NE(error_of([&] { begun.job.undo(); }).find("no step to take back"), std::string::npos);
+  expect_same(begun.job.next(), dig);
+}
+
+TEST(SiteJob, AJobThatCannotBeMendedIsRefused) {
+  BegunJob begun;
+  const JobStep dig = begun.job.next();
+  const std::string log = begun.of.path() + "/job-log.jsonl", kept = content_of(log);
+  std::filesystem::remove(log);
+  std::filesystem::create_directory(log);
+  const std::string record = begun.of.record();
+  EXPECT_NE(error_of([&] { begun.job.done(dig.id, {}); }, ErrorKind::bad_file), "no error");
+  const auto refused = [&](const std::function<void()>& change) {
+    EXPECT_NE(error_of(change, ErrorKind::bad_file).find("cannot be restored"), std::string::npos);
+  };
+  refused([&] { (void)begun.job.next(); });
+  refused([&] { (void)begun.job.present(); });
+  refused([&] { begun.job.done(dig.id, {}); });
+  refused([&] { begun.job.look(begun.of.truth.scan(), begun.of.truth.time()); });
+  refused([&] { begun.job.undo(); });
+  EXPECT_EQ(begun.of.record(), record);
+  { const SiteJob ended = std::move(begun.job); }
+  std::filesystem::remove(log);
+  std::ofstream(log, std::ios::binary) << kept;
+  begun.job = begun.of.resume();
+  expect_same(begun.job.next(), dig);
 }
 
 TEST(SiteJob, APayloadOfNothingMayBeReportedOfAMove) {

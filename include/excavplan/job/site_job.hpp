@@ -18,7 +18,8 @@
 namespace excavplan {
 
 /// Decides the steps of a job. All that it knows is in a folder, written at once after every step:
-/// it goes on where it was after the process was killed.
+/// it goes on where it was after the process was killed. A change that cannot be written is none;
+/// where not even what was there before can be restored, every other one is refused (bad_file).
 ///
 /// The machine works backwards from the far end of the design. From each place it digs layers down
 /// to the tolerance over the design, scans, and passes along the floor until the ground has the
@@ -43,8 +44,8 @@ class SiteJob : public JobPlanner {
   JobStep next() override;
   /// The step that next() gave last, if it is not done; also of an earlier process.
   std::optional<JobStep> present() const;
-  /// @throws Error (bad_input) if a number of the report is not finite, or a payload or a stall is
-  /// of a step that does not dig; as Site::update(). Nothing is changed then.
+  /// @throws Error (bad_input) as require_report() and Site::update(); (bad_file) if it cannot be
+  /// written. Nothing is changed then.
   void done(long long step, const StepReport& report) override;
   /// Takes in a scan that no step asked for. A step that is not done yet is then planned anew with
   /// a new number, but for a move.
