@@ -242,6 +242,9 @@ Json record_json(const JobRecord& record) {
   json["learning"] = learning_json(record.learning);
   json["rests_at_rad"] = joints_json(record.rests_at);
   if (record.off_place > 0.0) json["off_place_m"] = record.off_place;
+  if (record.is_sent_again) json["sent_again"] = true;
+  if (record.moves_to_dump > 0) json["moves_to_dump"] = record.moves_to_dump;
+  if (record.lacks_dump) json["lacks_dump"] = true;
   if (record.carried) json["carried"] = carried_json(*record.carried);
   if (record.present) json["present"] = step_json(*record.present);
   if (record.planned) json["planned"] = planned_json(*record.planned);
@@ -281,6 +284,10 @@ JobRecord read_record(const std::string& path) {
   record.learning = read_learning(object.numbers("learning", 16));
   record.rests_at = read_joints(object, "rests_at_rad");
   if (object.has("off_place_m")) record.off_place = object.number("off_place_m", 0, 1e12);
+  if (object.has("sent_again")) record.is_sent_again = object.flag("sent_again");
+  if (object.has("moves_to_dump"))
+    record.moves_to_dump = static_cast<int>(object.number("moves_to_dump", 0, 1e9));
+  if (object.has("lacks_dump")) record.lacks_dump = object.flag("lacks_dump");
   if (object.has("carried")) record.carried = read_carried(object.object("carried"));
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));

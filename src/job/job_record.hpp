@@ -24,7 +24,10 @@ inline constexpr const char* job_file = "job.json";
 struct JobRecord {
   std::size_t station = 0;            ///< where the machine works now
   BasePose base;                      ///< where it stands
-  double off_place = 0.0;             ///< from where it was sent; 0 if sent there again [m]
+  double off_place = 0.0;             ///< from where it was sent [m]
+  bool is_sent_again = false;         ///< to its present station, which it missed
+  int moves_to_dump = 0;              ///< in succession without a dig, as soil had no place
+  bool lacks_dump = false;            ///< so many that the soil was given up
   long long last_step = 0;            ///< number of the step that was made last
   std::optional<JobStep> present;     ///< that is not done yet
   std::optional<PlannedDig> planned;  ///< of it, if it is a dig

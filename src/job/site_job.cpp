@@ -46,6 +46,7 @@ constexpr int most_fruitless_wide = 12;      // likewise where many places are l
 constexpr int rounds_of_ends = 2;            // of a wide design, after each was dug from once
 constexpr double far_end = 0.8;              // that may slope until it is dug from beyond [m]
 constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
+constexpr int most_moves_to_dump = 3;        // from one station, in succession without a dig
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
 constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
 constexpr double most_undug = 0.3;           // share of such cells where passes pay
@@ -176,7 +177,7 @@ struct SiteJob::State {
   JobStep move_step(const JobStation& station);
   JobStep leave();
   JobStep go_to(const JobStation& place);
-  std::optional<JobStation> place_to_dump_from() const;
+  std::optional<JobStation> place_to_dump_from();
   std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
   bool has_shape(const JobProgress& now, double share = 1.0) const {
@@ -562,22 +563,30 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
 }
 
 /// Another place for the present station, if its soil has no place any more.
-std::optional<JobStation> SiteJob::State::place_to_dump_from() const {
+std::optional<JobStation> SiteJob::State::place_to_dump_from() {
   const JobStation& station = stations[record.station];
   if (!record.has_arrived || !station.is_wide) return std::nullopt;
   if (dump_place(settings, map, ground.expected(), record.base, {0.0, true})) return std::nullopt;
+  if (record.moves_to_dump >= most_moves_to_dump) {
+    record.lacks_dump = true;
+    return std::nullopt;
+  }
   const JobFrame line = frame_at(station);
   auto place = nearest_place({settings, map, first, ground.expected()}, line, station);
   if (!place) return place;
   const Eigen::Vector2d off =
       line.of({record.base.x, record.base.y}) - Eigen::Vector2d(place->along, place->beside);
-  return off.norm() > same_place ? place : std::nullopt;
+  if (!(off.norm() > same_place)) return std::nullopt;
+  ++record.moves_to_dump;
+  record.is_sent_again = true;
+  return place;
 }
 
 /// The present station once more, if the machine stands off it and leaves it undone.
 std::optional<JobStation> SiteJob::State::missed_place(const JobProgress& now) const {
   const JobStation& station = stations[record.station];
-  if (station.is_lookout() || !(record.off_place > same_place)) return std::nullopt;
+  if (station.is_lookout() || record.is_sent_again) return std::nullopt;
+  if (!(record.off_place > same_place)) return std::nullopt;
   const auto place = next_place(now);
   if (!place) return std::nullopt;
   const BasePose base = base_of(*place);
@@ -600,7 +609,10 @@ JobStep SiteJob::State::leave() {
   if (const auto place = place_to_dump_from()) return move_step(*place);
   const JobProgress now = progress();
   learn_floor();
-  if (const auto place = missed_place(now)) return go_to(*place);
+  if (const auto place = missed_place(now)) {
+    record.is_sent_again = true;
+    return go_to(*place);
+  }
   const bool looked_in_vain = stations[record.station].is_lookout() &&
                               now.seen - record.seen_before_look < least_newly_seen;
   record.seen_before_look = now.seen;
@@ -610,7 +622,8 @@ JobStep SiteJob::State::leave() {
     if (looked_in_vain && stations[record.station].is_lookout()) continue;
     const auto place = next_place(now);
     if (!place) continue;
-    record.off_place = 0.0;
+    record.is_sent_again = false;
+    record.moves_to_dump = 0;
     return go_to(*place);
   }
   if (record.carried) return step_of(JobAction::stop, "the soil in the bucket has no place");
@@ -619,9 +632,9 @@ JobStep SiteJob::State::leave() {
                             readable(100.0 * now.beyond_twice, 2) +
                             " % beyond twice the tolerance, " + readable(100.0 * now.seen, 3) +
                             " % are seen";
-  return step_of(
-      JobAction::stop,
-      (has_shape(now) ? "the rest cannot be seen" : "what is left cannot be dug") + found);
+  const std::string rest = std::string("what is left cannot be dug") +
+                           (record.lacks_dump ? ", as its soil has no place within reach" : "");
+  return step_of(JobAction::stop, (has_shape(now) ? "the rest cannot be seen" : rest) + found);
 }
 
 void SiteJob::State::take_scan(const StepReport& report) {
@@ -650,6 +663,7 @@ void SiteJob::State::lay_aside(const JobStep& dig) {
 
 void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   record.learning.learn(*record.planned, record.signs, report);
+  record.moves_to_dump = 0;
   JobProgress& progress = record.progress;
   const bool finishing = step.what == JobAction::finish;
   ++(finishing ? progress.finishing_passes : progress.digs);
@@ -704,8 +718,7 @@ void SiteJob::State::end_step(const StepReport& report) {
   if (report.base) record.base = *report.base;
   if (step.what == JobAction::move) {
     if (!report.base) record.base = step.base;
-    const double off = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
-    record.off_place = record.off_place > 0.0 ? 0.0 : off;
+    record.off_place = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
     record.has_arrived = true;
     record.learning.move();
     ++record.progress.moves;
