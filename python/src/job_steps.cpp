@@ -135,13 +135,13 @@ void bind_report(py::module_& module) {
            arg("joint_work") = py::none(), arg("stalled") = false, arg("base") = py::none(),
            "scan: of the ground after it, in the site's frame; time: when, since 1970-01-01 UTC,\n"
            "else now [s]; payload_mass: by the scale [kg]; joint_work: over the whole cycle [J];\n"
-           "stalled: the path was not finished; base: BasePose after a move.")
+           "stalled: the path was not finished; base: BasePose, where it stands.")
       .def_readonly("scan", &StepReport::scan, "Or None.")
       .def_readonly("time", &StepReport::time, "Since 1970-01-01 UTC [s].")
       .def_readonly("payload_mass", &StepReport::payload_mass, "By the scale [kg], or None.")
       .def_readonly("joint_work", &StepReport::joint_work, "Over the whole cycle [J], or None.")
       .def_readonly("stalled", &StepReport::stalled, "The machine could not finish the path.")
-      .def_readonly("base", &StepReport::base, "Where the machine stands after a move, or None.")
+      .def_readonly("base", &StepReport::base, "Where the machine stands now, or None.")
       .def("__repr__", &shown_report);
 }
 

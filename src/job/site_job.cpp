@@ -780,9 +780,8 @@ void SiteJob::State::require_whole() const {
   if (is_whole) return;
   throw Error(ErrorKind::bad_file,
               folder +
-                  ": the last change failed, and what was there before cannot be restored: "
-                  "once the folder can be written to, go on with the job as it was after a "
-                  "kill");
+                  ": the last change failed, and what was there before cannot be restored: open "
+                  "the job again once its folder can be written to");
 }
 
 SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
