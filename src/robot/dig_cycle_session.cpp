@@ -56,7 +56,6 @@ struct DigCycleSession::State {
   }
 
   void mark(Time time);
-  void set_back(const RobotMessage& message);
   void take_points(LiveFrame frame);
   std::string early_text() const;
   std::vector<Warning> scan_warnings(const CycleEstimate& answer, bool averaged) const;
@@ -96,12 +95,6 @@ struct DigCycleSession::State {
 void DigCycleSession::State::mark(Time time) {
   robot.tell_time(time);
   if (time) marked = time;
-}
-
-/// A mark of a clock that was set back since does not hold.
-void DigCycleSession::State::set_back(const RobotMessage& message) {
-  constexpr std::int64_t most = 1'000'000'000;  // the clock, not the order of messages; ours
-  if (message.received && marked && *message.received < later(*marked, -most)) marked.reset();
 }
 
 void DigCycleSession::State::take_points(LiveFrame frame) {
@@ -285,7 +278,7 @@ DigCycleSession& DigCycleSession::operator=(DigCycleSession&&) noexcept = defaul
 void DigCycleSession::take(const RobotMessage& message) {
   State& state = *state_;
   std::optional<LiveFrame> points = state.robot.take(message);
-  state.set_back(message);
+  if (is_set_back(message, state.marked)) state.marked.reset();
   if (points) return state.take_points(std::move(*points));
   for (Frames* frames : {&state.recent, &state.before, &state.after}) {
     state.robot.settle_postures(*frames, false);
@@ -325,10 +318,8 @@ std::size_t DigCycleSession::early_scans() const { return state_->early; }
 const GroundDensity& DigCycleSession::density() const { return state_->density; }
 
 std::string describe(const DigCycleSession& session) {
-  const std::size_t early = session.early_scans();
   return std::string(name(session.stage())) + ' ' +
-         count_text(session.scans(), session.scans_wanted()) +
-         (early == 0 ? "" : ", " + std::to_string(early) + " too early");
+         scans_text(session.scans(), session.scans_wanted(), session.early_scans());
 }
 
 CycleEstimate DigCycleSession::State::estimate_of_scans(bool& averaged) {

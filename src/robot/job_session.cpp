@@ -34,25 +34,22 @@ LiveSettings live_settings(const Machine& machine, const JobSessionSettings& set
 }
 
 /// @param step  it is of
-void check(const MotionReport& report, const JobStep& step) {
-  if (report.payload_mass) {
-    require(*report.payload_mass >= 0.0 && std::isfinite(*report.payload_mass), "the payload",
-            *report.payload_mass, "at least 0 kg");
-  }
-  if (report.joint_work) {
-    require(*report.joint_work > 0.0 && std::isfinite(*report.joint_work), "the work of the joints",
-            *report.joint_work, "above 0 J");
-  }
-  if (!step.digs()) {
-    const std::string nothing_dug = "step " + std::to_string(step.id) + " is a " + name(step.what) +
-                                    ", in which nothing is dug: it has no ";
-    require(report.payload_mass.value_or(0.0) == 0.0, nothing_dug + "payload");
-    require(!report.stalled, nothing_dug + "stall");
-  }
-  if (!report.base) return;
-  for (const double number : {report.base->x, report.base->y, report.base->heading}) {
-    require(std::isfinite(number), "the base", number, "finite");
-  }
+StepReport step_report(const MotionReport& told, const JobStep& step) {
+  StepReport report;
+  report.payload_mass = told.payload_mass;
+  report.joint_work = told.joint_work;
+  report.stalled = told.stalled;
+  report.base = told.base;
+  if (report.base) report.base->z = step.base.z;
+  return report;
+}
+
+bool same(const StepReport& a, const StepReport& b) {
+  if (a.base.has_value() != b.base.has_value()) return false;
+  const bool same_base = !a.base || (a.base->x == b.base->x && a.base->y == b.base->y &&
+                                     a.base->heading == b.base->heading);
+  return same_base && a.payload_mass == b.payload_mass && a.joint_work == b.joint_work &&
+         a.stalled == b.stalled;
 }
 
 }  // namespace
@@ -77,6 +74,8 @@ struct JobSession::State {
         robot(live_settings(driven.site.machine, settings)) {}
 
   void add_motion(SessionStep& answer) const;
+  void collect(LiveFrame points);
+  bool may_settle() const;
   Scan scan(const BasePose& base);
 
   JobSessionSettings settings;
@@ -84,9 +83,11 @@ struct JobSession::State {
   JobSettings driven;  ///< the order, with the joints as the settings name them
   LiveRobot robot;
   SessionStage stage = SessionStage::idle;
-  std::optional<MotionReport> reported;
+  std::optional<StepReport> reported;
   LiveTime ended;                 ///< when the motion did
   std::vector<LiveFrame> frames;  ///< of the scan
+  LiveTime complete;              ///< when the last of them came
+  std::size_t early = 0;          ///< messages of points from before the motion ended
 };
 
 void JobSession::State::add_motion(SessionStep& answer) const {
@@ -121,6 +122,22 @@ void JobSession::State::add_motion(SessionStep& answer) const {
   }
 }
 
+void JobSession::State::collect(LiveFrame points) {
+  if (points.measured && ended && *points.measured < *ended) {
+    ++early;
+    return;
+  }
+  frames.push_back(std::move(points));
+  complete = robot.now();
+}
+
+/// Whether transforms and joint states of the scan are missing that may still come.
+bool JobSession::State::may_settle() const {
+  const LiveTime now = robot.now();
+  if (!now || !complete || robot.is_settled(frames)) return false;
+  return std::abs(seconds_between(*complete, *now)) < longest_wait;
+}
+
 /// In the frame of the site.
 Scan JobSession::State::scan(const BasePose& base) {
   bool averaged = true;
@@ -145,10 +162,9 @@ void JobSession::take(const RobotMessage& message) {
   State& state = *state_;
   std::vector<LiveFrame>& frames = state.frames;
   std::optional<LiveFrame> points = state.robot.take(message);
-  if (points && state.stage == SessionStage::scanning && frames.size() < state.settings.scans) {
-    if (points->measured && state.ended && *points->measured < *state.ended) return;
-    frames.push_back(std::move(*points));
-  }
+  if (is_set_back(message, state.ended)) state.ended.reset();
+  if (points && state.stage == SessionStage::scanning && frames.size() < state.settings.scans)
+    state.collect(std::move(*points));
   if (frames.empty()) return;
   state.robot.settle(frames, false);
   state.robot.settle_postures(frames, false);
@@ -187,27 +203,32 @@ void JobSession::report(const MotionReport& report, std::optional<std::int64_t> 
   require(present->id == report.step,
           told + ", the present one is " + std::to_string(present->id) + ": nothing is changed");
   require(present->what != JobAction::stop, told + ", the end of the job: nothing is changed");
-  check(report, *present);
+  StepReport news = step_report(report, *present);
+  require_report(*present, news);
+  if (state.stage == SessionStage::scanning) {
+    require(same(news, *state.reported),
+            told +
+                ", which was reported otherwise and whose scan is being collected: nothing is "
+                "changed");
+    return;
+  }
   leave();
   state.robot.tell_time(time);
-  state.reported = report;
-  if (state.reported->base) state.reported->base->z = present->base.z;
+  state.reported = std::move(news);
   state.ended = time;
   if (present->what == JobAction::scan) state.stage = SessionStage::scanning;
 }
 
-std::optional<StepOutcome> JobSession::finish() {
+std::optional<StepOutcome> JobSession::finish(std::optional<std::int64_t> time) {
   State& state = *state_;
+  state.robot.tell_time(time);
+  if (!state.reported) return {};
   const bool scans = state.stage == SessionStage::scanning;
-  if (!state.reported || (scans && state.frames.size() < state.settings.scans)) return {};
+  if (scans && (state.frames.size() < state.settings.scans || state.may_settle())) return {};
   StepOutcome outcome;
-  outcome.step = *state.job.present();
-  StepReport report;
-  report.payload_mass = state.reported->payload_mass;
-  report.joint_work = state.reported->joint_work;
-  report.stalled = state.reported->stalled;
-  report.base = state.reported->base;
+  StepReport report = *state.reported;
   try {
+    outcome.step = *state.job.present();
     std::vector<LiveFrame> known = {LiveFrame()};
     known.front().time = state.robot.now().value_or(0);
     report.time = seconds_of(scans ? state.frames : known);
@@ -228,11 +249,14 @@ void JobSession::leave() {
   state_->reported.reset();
   state_->ended.reset();
   state_->frames.clear();
+  state_->complete.reset();
+  state_->early = 0;
 }
 
 SessionStage JobSession::stage() const { return state_->stage; }
 std::size_t JobSession::scans() const { return state_->frames.size(); }
 std::size_t JobSession::scans_wanted() const { return state_->settings.scans; }
+std::size_t JobSession::early_scans() const { return state_->early; }
 JobProgress JobSession::progress() const { return state_->job.progress(); }
 const Machine& JobSession::machine() const { return state_->driven.site.machine; }
 
@@ -241,7 +265,7 @@ std::string describe(const JobSession& session) {
     case SessionStage::driving:
       return "driving";
     case SessionStage::scanning:
-      return "scan " + count_text(session.scans(), session.scans_wanted());
+      return "scan " + scans_text(session.scans(), session.scans_wanted(), session.early_scans());
     default:
       return "idle";
   }

@@ -25,8 +25,18 @@ double seconds_between(std::int64_t from, std::int64_t to) {
   return 1e-9 * (static_cast<double>(to) - static_cast<double>(from));
 }
 
+bool is_set_back(const RobotMessage& message, LiveTime mark) {
+  constexpr std::int64_t most = 1'000'000'000;  // the clock, not the order of messages; ours
+  return message.received && mark && *message.received < later(*mark, -most);
+}
+
 std::string count_text(std::size_t found, std::size_t wanted) {
   return std::to_string(found) + " of " + std::to_string(wanted);
+}
+
+std::string scans_text(std::size_t found, std::size_t wanted, std::size_t early) {
+  const std::string text = count_text(found, wanted);
+  return early == 0 ? text : text + ", " + std::to_string(early) + " too early";
 }
 
 void name_joints(const std::vector<std::string>& names, RobotJoints& joints,
@@ -205,6 +215,12 @@ void LiveRobot::settle_postures(std::vector<LiveFrame>& frames, bool all) const 
     });
     if (reached || all) frame.posture = posture(frame.time);
   }
+}
+
+bool LiveRobot::is_settled(const std::vector<LiveFrame>& frames) const {
+  return std::all_of(frames.begin(), frames.end(), [&](const LiveFrame& frame) {
+    return frame.pose && (frame.posture || !settings_.machine_in_view);
+  });
 }
 
 Scan LiveRobot::scan_of(std::vector<LiveFrame>& frames, const std::string& name,

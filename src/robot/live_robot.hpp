@@ -27,8 +27,12 @@ using LiveTime =
 
 /// Seconds from one time to another.
 double seconds_between(std::int64_t from, std::int64_t to);
+/// Whether the clock of who receives was set back since a mark, so that it does not hold.
+bool is_set_back(const RobotMessage& message, LiveTime mark);
 /// "2 of 5".
 std::string count_text(std::size_t found, std::size_t wanted);
+/// "2 of 5, 3 too early".
+std::string scans_text(std::size_t found, std::size_t wanted, std::size_t early);
 
 /// Names joints as a robot does.
 /// @param names  of boom, arm, bucket and swing; empty: they keep theirs
@@ -75,6 +79,8 @@ class LiveRobot {
   /// Finds postures that are not known yet, once the joint states reach the time of the points;
   /// `all`: by those that came.
   void settle_postures(std::vector<LiveFrame>& frames, bool all) const;
+  /// Whether all poses are known, and the postures that are asked for.
+  bool is_settled(const std::vector<LiveFrame>& frames) const;
   /// Frames as one scan in the frame that the settings say, its machine in that of its own.
   /// @param averaged  turns false where they had to be joined
   /// @throws Error as TransformTree::lookup(); (bad_input) if the machine is in view and its

@@ -160,26 +160,19 @@ TEST(JobSession, AReportThatDoesNotFitChangesNothing) {
             }),
             "the report is of step 7, the present one is 1: nothing is changed");
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  // What a report may hold is one check, that of the job: site_job_test.cpp.
   EXPECT_NE(error_of([&] {
               session.report({1, -1.0, {}, false, {}});
-            }).find("payload is -1"),
-            std::string::npos);
-  EXPECT_NE(error_of([&] {
-              session.report({1, {}, 0.0, false, {}});
-            }).find("joints is 0"),
+            }).find("payload mass of step 1, move [kg] is -1"),
             std::string::npos);
   EXPECT_NE(error_of([&] {
               session.report({1, {}, {}, false, BasePose{none, 0.0, 0.0, 0.0}});
-            }).find("the base is"),
+            }).find("base of step 1, move [m] is nan"),
             std::string::npos);
-  EXPECT_EQ(error_of([&] {
-              session.report({1, 310.0, {}, false, {}});
-            }),
-            "step 1 is a move, in which nothing is dug: it has no payload");
   EXPECT_EQ(error_of([&] {
               session.report({1, {}, {}, true, {}});
             }),
-            "step 1 is a move, in which nothing is dug: it has no stall");
+            "step 1 is a move and cannot have stalled: only a dig can");
   EXPECT_FALSE(session.finish());
   EXPECT_EQ(describe(session), "driving");
   EXPECT_EQ(robot.of.record(), record);
@@ -242,20 +235,21 @@ TEST(JobSession, CollectsTheScanThatAStepAsksFor) {
   EXPECT_EQ(describe(session), "scan 0 of 2");
   robot.later -= 500'000'000;
   robot.scan(take, points);
-  EXPECT_EQ(session.scans(), 0U) << "measured before the end of the motion";
+  EXPECT_EQ(describe(session), "scan 0 of 2, 1 too early") << "before the end of the motion";
   robot.later += 500'000'000;
   robot.scan(take, points);
-  EXPECT_EQ(describe(session), "scan 1 of 2");
+  EXPECT_EQ(describe(session), "scan 1 of 2, 1 too early");
   EXPECT_NE(error_of([&] { robot.send(take, "/points", "sensor_msgs/msg/PointCloud2", "junk"); },
                      ErrorKind::bad_file),
             "no error");
-  EXPECT_EQ(describe(session), "scan 1 of 2");
+  EXPECT_EQ(describe(session), "scan 1 of 2, 1 too early");
   EXPECT_FALSE(session.finish());
 
   session.leave();
   EXPECT_EQ(describe(session), "idle");
   EXPECT_EQ(session.plan(robot.now()).step.id, step.id);
   session.report({step.id, {}, {}, false, {}}, robot.now());
+  EXPECT_EQ(session.early_scans(), 0U);
   robot.scan(take, points);
   robot.scan(take, points);
   const auto outcome = session.finish();
@@ -294,8 +288,11 @@ TEST(JobSession, AScanThatCannotBePlacedKeepsTheStep) {
   const std::string record = robot.of.record();
   of.report(robot);
   robot.scan(into(of.session), robot.points_now(), "lidar");
-  EXPECT_NE(error_of([&] { (void)of.session.finish(); }, ErrorKind::bad_file).find("/tf"),
-            std::string::npos);
+  EXPECT_FALSE(of.session.finish(robot.now() + 1'900'000'000)) << "they may still come";
+  EXPECT_NE(
+      error_of([&] { (void)of.session.finish(robot.now() + 2'000'000'000); }, ErrorKind::bad_file)
+          .find("/tf"),
+      std::string::npos);
   EXPECT_EQ(robot.of.record(), record);
   EXPECT_EQ(of.session.stage(), SessionStage::idle);
 
@@ -309,6 +306,108 @@ TEST(JobSession, AScanThatCannotBePlacedKeepsTheStep) {
   ASSERT_TRUE(outcome);
   EXPECT_FALSE(has(outcome->warnings, WarningCode::scan_not_taken));
   EXPECT_EQ(outcome->progress.scans, 1);
+}
+
+/// The points as a sensor 1.5 m up tells them.
+struct LateTransforms {
+  LateTransforms() {
+    settings.site_frame = "map";
+    for (Eigen::Vector3d& point : lifted) point.z() -= 1.5;
+  }
+  /// @param age  of its stamp [ns]
+  void transform(const Take& take, std::int64_t age) const {
+    robot.send(take, "/tf", "tf2_msgs/msg/TFMessage",
+               transform_bytes({{robot.now() - age, "map", "lidar", {0.0, 0.0, 1.5}}}));
+  }
+  RobotJob robot;
+  JobSessionSettings settings = Scanning::stalled(robot).settings(2);
+  Points lifted = robot.points_now();
+};
+
+TEST(JobSession, WaitsForTransformsThatComeLate) {
+  LateTransforms late;
+  Scanning of(late.settings);
+  const Take take = into(of.session);
+  late.transform(take, 0);
+  late.robot.later += 500'000'000;
+  of.report(late.robot);
+  for (int i = 0; i < 2; ++i) late.robot.scan(take, late.lifted, "lidar");
+  EXPECT_FALSE(of.session.finish(late.robot.now()));
+  late.robot.later += 700'000'000;
+  late.transform(take, 650'000'000);  // between the points and 0.1 s before them
+  const auto outcome = of.session.finish(late.robot.now());
+  ASSERT_TRUE(outcome);
+  EXPECT_FALSE(has(outcome->warnings, WarningCode::scan_not_taken));
+}
+
+TEST(JobSession, WaitsForJointStatesThatComeLateAndDoesWithoutLaterOnes) {
+  RobotJob robot;
+  JobSessionSettings settings = Scanning::stalled(robot).settings();
+  settings.machine_in_view = true;
+  Scanning of(settings);
+  const Take take = into(of.session);
+  robot.stand(take);
+  of.report(robot);
+  const Points points = robot.points_now();
+  robot.scan(take, points);
+  EXPECT_FALSE(of.session.finish(robot.now())) << "none is of the time of the points";
+  robot.stand(take, {-0.6, 1.6, 0.5, 0.4}, 1);
+  EXPECT_TRUE(of.session.finish(robot.now()));
+
+  RobotJob other;
+  settings.folder = Scanning::stalled(other).settings().folder;
+  Scanning without(settings);
+  other.stand(into(without.session));
+  without.report(other);
+  other.scan(into(without.session), points);
+  EXPECT_FALSE(without.session.finish(other.now()));
+  EXPECT_TRUE(without.session.finish(other.now() + 2'500'000'000)) << "0.1 s before is as good";
+}
+
+/// Simulated time begins anew, or a recording is played once more.
+TEST(JobSession, AClockThatIsSetBackKeepsNoScanWaiting) {
+  for (const std::int64_t back : {900'000'000LL, 5'000'000'000LL}) {
+    RobotJob robot;
+    Scanning of(Scanning::stalled(robot).settings());
+    robot.later += 10'000'000'000;
+    of.report(robot);
+    robot.later -= back;
+    robot.scan(into(of.session), robot.points_now());
+    const bool is_set_back = back > 1'000'000'000;
+    EXPECT_EQ(of.session.scans(), is_set_back ? 1U : 0U) << back;
+    EXPECT_EQ(of.session.early_scans(), is_set_back ? 0U : 1U) << back;
+    EXPECT_EQ(of.session.finish(robot.now()).has_value(), is_set_back) << back;
+  }
+}
+
+TEST(JobSession, TheSameReportOfAScanAgainChangesNothing) {
+  RobotJob robot;
+  Scanning of(Scanning::stalled(robot).settings(2));
+  JobSession& session = of.session;
+  const JobStep step = session.plan(robot.now()).step;
+  const MotionReport told = {step.id, {}, 900.0, false, BasePose{0.1, 0.2, 0.0, 0.3}};
+  session.report(told, robot.now());
+  robot.scan(into(session), robot.points_now());
+  EXPECT_EQ(describe(session), "scan 1 of 2");
+  robot.later += 500'000'000;
+  session.report(told, robot.now());
+  EXPECT_EQ(describe(session), "scan 1 of 2");
+  const auto refusal = [&](const auto& change) {
+    MotionReport other = told;
+    change(other);
+    return error_of([&] { session.report(other, robot.now()); });
+  };
+  const std::string text = "the report is of step " + std::to_string(step.id) +
+                           ", which was reported otherwise and whose scan is being collected: "
+                           "nothing is changed";
+  EXPECT_EQ(refusal([](MotionReport& each) { each.joint_work = 901.0; }), text);
+  EXPECT_EQ(refusal([](MotionReport& each) { each.payload_mass = 0.0; }), text);
+  EXPECT_EQ(refusal([](MotionReport& each) { each.base.reset(); }), text);
+  EXPECT_EQ(refusal([](MotionReport& each) { each.base->heading = 0.0; }), text);
+  robot.later -= 400'000'000;  // measured after the first report
+  robot.scan(into(session), robot.points_now());
+  ASSERT_TRUE(session.finish());
+  EXPECT_EQ(session.plan().step.base.heading, 0.3) << "where the machine stands, of any step";
 }
 
 TEST(JobSession, AScanOfOtherGroundIsNotTaken) {

@@ -58,8 +58,8 @@ bool may_be_driven(const SessionStep& step);
 /// What is told when the motion of a step has ended.
 struct MotionReport {
   long long step = 0;                  ///< JobStep::id
-  std::optional<double> payload_mass;  ///< as StepReport::payload_mass [kg], >= 0
-  std::optional<double> joint_work;    ///< as StepReport::joint_work [J], > 0
+  std::optional<double> payload_mass;  ///< as StepReport::payload_mass [kg]
+  std::optional<double> joint_work;    ///< as StepReport::joint_work [J]
   bool stalled = false;                ///< as StepReport::stalled
   std::optional<BasePose> base;        ///< as StepReport::base; its height is that of the step
 };
@@ -100,23 +100,28 @@ class JobSession {
   /// As DigCycleSession::confirm_start().
   void confirm_start(SessionStep& step, std::optional<std::int64_t> time = {});
 
-  /// The motion of the step has ended. Needs no plan() before it in this session.
-  /// @param time  when [ns]: points that were measured before are left out; nothing: what comes
-  /// counts
-  /// @throws Error (bad_input) if it is of another step than the present one, or a number is out of
-  /// range; nothing is changed then
+  /// The motion of the step has ended. Needs no plan() before it in this session. The same report
+  /// again, while the step's scan is collected, changes nothing.
+  /// @param time  when [ns]: points that were measured before are left out, unless the clock is set
+  /// back; nothing: what comes counts
+  /// @throws Error (bad_input) if it is of another step than the present one, differs from that
+  /// whose scan is collected, or as require_report(); nothing is changed then
   void report(const MotionReport& report, std::optional<std::int64_t> time = {});
-  /// Hands the reported step to the job; one that asks for a scan when that is complete.
+  /// Hands the reported step to the job; one that asks for a scan when that is complete, and the
+  /// transforms and joint states of its points have come, for which it waits `longest_wait`.
+  /// @param time  as of plan()
   /// @return nothing until then
   /// @throws Error as SiteJob::done(), and if no transform leads to a scan; the step is then to be
   /// reported again
-  std::optional<StepOutcome> finish();
+  std::optional<StepOutcome> finish(std::optional<std::int64_t> time = {});
+  static constexpr double longest_wait = 2.0;  ///< by the clock of the messages; ours [s]
   /// Gives up driving or scanning; the step stays as it is.
   void leave();
 
   SessionStage stage() const;        ///< where the session is
   std::size_t scans() const;         ///< messages in the scan that is collected
   std::size_t scans_wanted() const;  ///< those of the settings
+  std::size_t early_scans() const;   ///< messages measured before the motion ended, left out
   JobProgress progress() const;      ///< of the job
   const Machine& machine() const;    ///< of the job, its joints as the settings name them
 
@@ -125,7 +130,7 @@ class JobSession {
   std::unique_ptr<State> state_;
 };
 
-/// "idle", "driving", "scan 2 of 5".
+/// "idle", "driving", "scan 2 of 5"; ", 3 too early": of early_scans().
 std::string describe(const JobSession& session);
 
 /// As JSON with the keys of `plan-site next`, but for the file of the trajectory

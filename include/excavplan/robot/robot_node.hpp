@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <excavplan/robot/dig_cycle_session.hpp>
+#include <excavplan/robot/job_session.hpp>
 #include <excavplan/robot/node_settings.hpp>
 
 /// @file
@@ -51,6 +53,23 @@ inline std::optional<std::int64_t> known_time(std::int64_t now) {
 inline std::string early_text(const DigCycleSession& session) {
   return "points were measured before the dig was over and are left out: " + describe(session);
 }
+/// The same of the scan of a step.
+inline std::string early_text(const JobSession& session) {
+  return "points were measured before the motion was over and are left out: " + describe(session);
+}
+
+/// Whether that is to be told now: once of each scan.
+class EarlyPoints {
+ public:
+  template <typename Session>
+  bool are_news(const Session& session) {
+    const bool were_told = std::exchange(are_told_, session.early_scans() > 0);
+    return are_told_ && !were_told;
+  }
+
+ private:
+  bool are_told_ = false;
+};
 
 /// "code: text" of each.
 inline std::vector<std::string> texts_of(const std::vector<Warning>& warnings) {

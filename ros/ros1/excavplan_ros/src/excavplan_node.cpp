@@ -70,9 +70,7 @@ class Node {
     const std::string state = excavplan::describe(session_);
     if (state != told_state_) state_.publish(text_message(state));
     told_state_ = state;
-    const bool any_early = session_.early_scans() > 0;
-    if (any_early && !told_early_) ROS_WARN("%s", excavplan::early_text(session_).c_str());
-    told_early_ = any_early;
+    if (early_.are_news(session_)) ROS_WARN("%s", excavplan::early_text(session_).c_str());
   }
 
   CycleEstimate make_estimate() {
@@ -134,7 +132,7 @@ class Node {
   RobotListener robot_;
   std::vector<ros::Subscriber> subscribers_;
   std::string told_state_;
-  bool told_early_ = false;
+  excavplan::EarlyPoints early_;
   ros::Publisher state_, estimate_, plan_, trajectory_;
   std::vector<ros::ServiceServer> services_;
 };

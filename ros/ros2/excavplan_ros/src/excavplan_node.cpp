@@ -94,11 +94,9 @@ class ExcavplanNode : public rclcpp::Node {
     const std::string state = describe(session_);
     if (state != told_state_) state_->publish(text_message(state));
     told_state_ = state;
-    const bool any_early = session_.early_scans() > 0;
-    if (any_early && !told_early_) {
+    if (early_.are_news(session_)) {
       RCLCPP_WARN(get_logger(), "%s", excavplan::early_text(session_).c_str());
     }
-    told_early_ = any_early;
   }
 
   void fill(Estimate::Response& response) {
@@ -144,7 +142,7 @@ class ExcavplanNode : public rclcpp::Node {
   excavplan::NodeSettings settings_;
   excavplan::DigCycleSession session_;
   std::string told_state_;
-  bool told_early_ = false;
+  excavplan::EarlyPoints early_;
   rclcpp::Publisher<String>::SharedPtr state_, estimate_, plan_;
   rclcpp::Publisher<JointTrajectory>::SharedPtr trajectory_;
   excavplan_ros::RobotListener robot_;
