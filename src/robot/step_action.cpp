@@ -38,33 +38,50 @@ StepAction::StepAction(JobSessionSettings settings, StepPort port)
 
 void StepAction::begin() {
   is_active_ = true;
+  ++goals_;
   answer_ = {};
   shown_.clear();
+  show("planning");
+  if (is_planning_) return;
+  is_planning_ = true;
   try {
-    show("planning");
     do_step();
   } catch (const std::exception& error) {
     session_.leave();
     end(StepEnd::aborted, error.what());
   }
+  is_planning_ = false;
+}
+
+/// Nothing if the goal was given up meanwhile. For another one that came meanwhile it plans anew.
+std::optional<SessionStep> StepAction::planned_step() {
+  for (;;) {
+    const long long goal = goals_;
+    port_.take_joints();
+    SessionStep planned = session_.plan(port_.now());
+    port_.take_joints();
+    session_.confirm_start(planned, port_.now());
+    port_.take_requests();
+    if (!is_active_) return std::nullopt;
+    if (goal == goals_) return planned;
+  }
 }
 
 void StepAction::do_step() {
-  port_.take_joints();
-  SessionStep planned = session_.plan(port_.now());
-  port_.take_joints();
-  session_.confirm_start(planned, port_.now());
-  const JobStep& step = planned.step;
-  const bool may = may_be_driven(planned);
+  const std::optional<SessionStep> planned = planned_step();
+  if (!planned) return;
+  const JobStep& step = planned->step;
+  const bool may = may_be_driven(*planned);
   answer_ = {false, "", step.id, name(step.what), step.trustworthy, false, step.warnings, "", ""};
-  answer_.json = to_json(planned);
+  answer_.finished = step.ends_finished();
+  answer_.json = to_json(*planned);
   port_.step(answer_.json);
-  port_.trajectory(may && step.moves_front() ? planned.motion : without_points(session_.machine()));
+  port_.trajectory(may && step.moves_front() ? planned->motion
+                                             : without_points(session_.machine()));
   if (step.what == JobAction::stop) {
-    return session_.progress().is_finished ? end(StepEnd::succeeded)
-                                           : end(StepEnd::aborted, step.reason);
+    return answer_.finished ? end(StepEnd::succeeded) : end(StepEnd::aborted, step.reason);
   }
-  if (!may) return end(StepEnd::aborted, doubts_of(planned));
+  if (!may) return end(StepEnd::aborted, doubts_of(*planned));
   show(describe(session_));
 }
 
@@ -85,6 +102,10 @@ void StepAction::report(const MotionReport& report) {
 
 void StepAction::take(const RobotMessage& message) {
   session_.take(message);
+  poll();
+}
+
+void StepAction::poll() {
   if (session_.stage() == SessionStage::scanning) go_on();
 }
 
@@ -92,7 +113,7 @@ void StepAction::take(const RobotMessage& message) {
 void StepAction::go_on() {
   if (session_.stage() == SessionStage::scanning) show(describe(session_));
   try {
-    const auto outcome = session_.finish();
+    const auto outcome = session_.finish(port_.now());
     if (!outcome) return;
     const auto& more = outcome->warnings;
     answer_.step = outcome->step.id;
@@ -121,7 +142,6 @@ void StepAction::end(StepEnd how, const std::string& message) {
   const JobProgress progress = session_.progress();
   answer_.success = how == StepEnd::succeeded;
   answer_.message = message;
-  answer_.finished = progress.is_finished && answer_.what == name(JobAction::stop);
   answer_.progress_json = to_json(progress);
   port_.end(how, answer_);
 }

@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/robot/step_action.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "job/job_record.hpp"
 #include "robot/robot_job.hpp"
 #include "site/site_digs.hpp"
 #include "support/errors.hpp"
@@ -20,6 +25,7 @@ struct FakeNode {
   StepPort port() {
     StepPort port;
     port.take_joints = [] {};
+    port.take_requests = [this] { requests(); };
     port.now = [this] { return std::optional(robot.now()); };
     port.step = [this](const std::string& json) { steps.push_back(json); };
     port.trajectory = [this](const JointMotion& motion) { motions.push_back(motion); };
@@ -48,6 +54,7 @@ struct FakeNode {
   std::vector<JointMotion> motions;
   std::vector<StepEnd> ends;
   StepAnswer last;
+  std::function<void()> requests = [] {};  ///< that come while it plans
   StepAction action;
 };
 
@@ -132,6 +139,87 @@ TEST(StepAction, ACancelledStepStaysAsItIs) {
   EXPECT_EQ(node.action.session().progress().digs, 1);
 }
 
+bool has_points(const JointMotion& motion) { return !motion.points.empty(); }
+
+TEST(StepAction, AGoalThatIsCancelledWhileItPlansSendsNoMotion) {
+  RobotJob robot;
+  FakeNode node(robot, robot.settings());
+  node.begin();
+  node.action.report(node.report());
+  node.requests = [&] { node.action.cancel(); };
+  node.motions.clear();
+  node.begin();
+  EXPECT_EQ(node.ends.back(), StepEnd::cancelled);
+  EXPECT_EQ(node.ends.size(), 2U);
+  EXPECT_EQ(node.states, States{"planning"});
+  EXPECT_TRUE(std::none_of(node.motions.begin(), node.motions.end(), has_points));
+  EXPECT_EQ(describe(node.action.session()), "idle");
+  node.requests = [] {};
+  node.begin();
+  EXPECT_TRUE(has_points(node.motions.back()));
+}
+
+TEST(StepAction, AGoalThatComesWhileAnotherIsPlannedGetsItsStep) {
+  RobotJob robot;
+  FakeNode node(robot, robot.settings());
+  node.begin();
+  node.action.report(node.report());
+  int more = 2;
+  node.requests = [&] {
+    if (more-- <= 0) return;
+    node.action.abandon();
+    node.action.begin();
+  };
+  node.motions.clear();
+  node.steps.clear();
+  node.begin();
+  EXPECT_EQ(node.ends,
+            (std::vector<StepEnd>{StepEnd::succeeded, StepEnd::aborted, StepEnd::aborted}));
+  EXPECT_EQ(std::count_if(node.motions.begin(), node.motions.end(), has_points), 1);
+  EXPECT_TRUE(has_points(node.motions.back()));
+  EXPECT_EQ(node.steps.size(), 1U);
+  EXPECT_EQ(describe(node.action.session()), "driving");
+  node.action.report(node.report());
+  EXPECT_EQ(node.ends.back(), StepEnd::succeeded);
+}
+
+/// Sets the step that the job of a folder is to do next.
+void ask_for(const std::string& folder, JobAction what, const std::string& reason) {
+  JobRecord record = load_record(folder);
+  record.present = JobStep();
+  record.present->id = record.last_step + 1;
+  record.present->what = what;
+  record.present->reason = reason;
+  save_record(folder, record);
+}
+
+TEST(StepAction, AJobIsFinishedIfItsLastStepSaysSo) {
+  RobotJob robot;
+  {
+    Points finished;
+    for (int i = 0; i < 300 * 200; ++i) {
+      const double x = -7.0 + 0.05 * (i / 200), y = -5.0 + 0.05 * (i % 200);
+      const bool is_cut = x > 2.0 && x < 4.5 && std::abs(y) < 0.5;
+      finished.emplace_back(x, y, is_cut ? -0.4 : 0.0);
+    }
+    Scan scan;
+    scan.clouds = {std::make_shared<const Cloud>(Cloud{finished})};
+    SiteJob job = robot.of.resume();
+    job.look(scan, robot.of.truth.time() + 1.0);
+    ASSERT_TRUE(job.progress().is_finished);
+  }
+  for (const bool is_finished : {false, true}) {
+    const std::string reason = is_finished ? "finished" : "the soil in the bucket has no place";
+    ask_for(robot.of.path(), JobAction::stop, reason);
+    FakeNode node(robot, robot.settings());
+    node.begin();
+    EXPECT_EQ(node.ends, std::vector<StepEnd>{is_finished ? StepEnd::succeeded : StepEnd::aborted});
+    EXPECT_EQ(node.last.success, is_finished);
+    EXPECT_EQ(node.last.finished, is_finished);
+    EXPECT_EQ(node.last.message, is_finished ? "" : reason);
+  }
+}
+
 TEST(StepAction, AReportOfAnotherStepIsRefusedAndTheGoalGoesOn) {
   RobotJob robot;
   FakeNode node(robot, robot.settings());
@@ -154,9 +242,11 @@ TEST(StepAction, AScanThatFailsEndsTheGoal) {
     node.begin();
     node.action.report(node.report(stalls));
   }
-  EXPECT_NE(
-      error_of([&] { robot.scan(node.take(), robot.points_now(), "lidar"); }, ErrorKind::bad_file),
-      "no error");
+  robot.scan(node.take(), robot.points_now(), "lidar");
+  node.action.poll();
+  EXPECT_EQ(node.ends.size(), 2U) << "its transforms may still come";
+  robot.later += 2'000'000'000;
+  EXPECT_NE(error_of([&] { node.action.poll(); }, ErrorKind::bad_file), "no error");
   EXPECT_EQ(node.ends.back(), StepEnd::aborted);
   EXPECT_NE(node.last.message.find("to be reported again"), std::string::npos);
 }

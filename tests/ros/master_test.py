@@ -43,7 +43,7 @@ import actionlib  # noqa: E402
 import rosgraph  # noqa: E402
 import rospy  # noqa: E402
 from actionlib_msgs.msg import GoalStatus  # noqa: E402
-from excavplan_ros.msg import DoStepAction, DoStepGoal  # noqa: E402
+from excavplan_ros.msg import DoStepAction, DoStepActionFeedback, DoStepGoal  # noqa: E402
 from excavplan_ros.srv import DigAndPlan, Estimate, Plan, StepDone, StepDoneRequest  # noqa: E402
 from geometry_msgs.msg import TransformStamped  # noqa: E402
 from rosgraph_msgs.msg import Log  # noqa: E402
@@ -416,6 +416,49 @@ class Job(unittest.TestCase):
             self.assertFalse(node.report(dig.step, payload_kg=[300.0]).success)
         shown = tool("plan-site", "next", folder)
         self.assertGreater(shown["step"], dig.step)
+
+    def test_a_goal_cancelled_while_it_is_planned_sends_no_motion(self):
+        with JobNode(self.begun(), scans=1) as node:
+            self.do_move(node)
+            node.stand(self.STANDS)
+            planning = threading.Event()
+
+            def stop(message):  # the client itself does not show feedback of a goal so early
+                if message.feedback.state == "planning" and not planning.is_set():
+                    node.process.send_signal(signal.SIGSTOP)
+                    planning.set()
+
+            shown = rospy.Subscriber("/job/do_step/feedback", DoStepActionFeedback, stop)
+            self.addCleanup(shown.unregister)
+            wait_until(lambda: shown.get_num_connections() > 0, "feedback")
+            node.trajectories.clear()
+            node.client.send_goal(DoStepGoal())
+            self.assertTrue(planning.wait(PATIENCE))
+            node.client.cancel_goal()
+            time.sleep(0.5)  # it waits where the node is going to find it
+            node.process.send_signal(signal.SIGCONT)
+            self.assertFalse(node.result().success)
+            self.assertEqual(node.client.get_state(), GoalStatus.PREEMPTED)
+            node.client.send_goal(DoStepGoal())
+            sent = node.trajectories
+            wait_until(lambda: len(sent) > 1 and sent[-1].points, "that of the other goal")
+            self.assertEqual([bool(each.points) for each in sent], [False, True])
+
+    def test_a_scan_whose_transforms_do_not_come_ends(self):
+        with JobNode(self.begun(), scans=1, site_frame="map") as node:
+            self.do_move(node)
+            node.begin()  # without joint states
+            node.result()
+            self.assertTrue(node.report(node.step["step"], stalled=True).success)
+            node.begin()
+            scan = node.wait_for("driving")
+            self.assertEqual(scan.what, "scan")
+            self.assertTrue(node.report(scan.step).success)
+            self.assertTrue(node.report(scan.step).success)
+            self.assertIn("reported otherwise", node.report(scan.step, energy_kj=[1.0]).message)
+            node.wait_for("scan 0 of 1")
+            node.scan(self.level)
+            self.assertIn("the step is to be reported again", node.result().message)
 
     def test_another_goal_ends_the_first(self):
         with JobNode(self.begun(), scans=1) as node:

@@ -139,6 +139,8 @@ bool shutdown();
 RCLCPP_ACTION = """#pragma once
 #include <array>
 #include <rclcpp/rclcpp.hpp>
+struct rcl_action_server_options_t {};
+rcl_action_server_options_t rcl_action_server_get_default_options();
 namespace rclcpp_action {
 using GoalUUID = std::array<std::uint8_t, 16>;
 enum class GoalResponse : std::int8_t { REJECT = 1, ACCEPT_AND_EXECUTE = 2, ACCEPT_AND_DEFER = 3 };
@@ -163,7 +165,9 @@ template <typename A, typename N>
 typename Server<A>::SharedPtr create_server(N node, const std::string& name,
                                             typename Server<A>::GoalCallback goal,
                                             typename Server<A>::CancelCallback cancel,
-                                            typename Server<A>::AcceptedCallback accepted);
+                                            typename Server<A>::AcceptedCallback accepted,
+                                            const rcl_action_server_options_t& options,
+                                            rclcpp::CallbackGroup::SharedPtr group);
 }  // namespace rclcpp_action
 """
 

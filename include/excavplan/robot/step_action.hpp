@@ -43,6 +43,8 @@ enum class StepEnd { succeeded, aborted, cancelled };
 /// What a node sends, and what it is asked for.
 struct StepPort {
   std::function<void()> take_joints;  ///< hands joint states that wait to take(); may throw nothing
+  /// Likewise goals and cancels to abandon(), begin() and cancel(). Called before a motion is sent.
+  std::function<void()> take_requests;
   std::function<std::optional<std::int64_t>()> now;     ///< as of JobSession::plan()
   std::function<void(const std::string&)> step;         ///< as JSON, before it is driven
   std::function<void(const JointMotion&)> trajectory;   ///< of the step, for a controller
@@ -57,7 +59,8 @@ class StepAction {
   /// @throws Error as JobSession()
   StepAction(JobSessionSettings settings, StepPort port);
 
-  /// A goal was accepted, and no other is active.
+  /// A goal was accepted, and no other is active. One that comes within the call, by
+  /// StepPort::take_requests, is planned for in that.
   void begin();
   /// Another goal came: the active one, if there is one, is aborted as by cancel().
   void abandon();
@@ -68,11 +71,15 @@ class StepAction {
   /// As JobSession::take(). @throws Error likewise, and as JobSession::finish(), which ends the
   /// goal
   void take(const RobotMessage& message);
+  /// To be called ten times a second: ends a scan whose transforms do not come.
+  /// @throws Error as take()
+  void poll();
 
   const JobSession& session() const { return session_; }  ///< of the job
 
  private:
   void do_step();
+  std::optional<SessionStep> planned_step();
   void give_up(StepEnd how, const std::string& why);
   void go_on();
   void show(const std::string& state);
@@ -80,8 +87,10 @@ class StepAction {
 
   JobSession session_;
   StepPort port_;
-  bool is_active_ = false;  // a goal
-  std::string shown_;       // of its states, the last
+  bool is_active_ = false;    // a goal
+  bool is_planning_ = false;  // within begin()
+  long long goals_ = 0;       // so far
+  std::string shown_;         // of its states, the last
   StepAnswer answer_;
 };
 

@@ -22,29 +22,48 @@ class JobNode {
   JobNode(ros::NodeHandle topics, ros::NodeHandle own)
       : step_(own.advertise<std_msgs::String>("step", 1, true)),
         trajectory_(own.advertise<trajectory_msgs::JointTrajectory>("trajectory", 1)),
-        server_(own, "do_step", false),
+        server_(with_queue(own, requests_), "do_step", false),
         action_(job_settings_of(own), port()),
-        robot_(topics, [this](const excavplan::RobotMessage& message) {
-          error_of([&] { action_.take(message); });
-        }) {
+        robot_(topics, [this](const excavplan::RobotMessage& message) { take(message); }) {
     service_ = own.advertiseService("step_done", &JobNode::step_done, this);
-    server_.registerGoalCallback([this] {
-      action_.abandon();
-      server_.acceptNewGoal();
-      action_.begin();
-    });
-    server_.registerPreemptCallback([this] {
-      if (!server_.isNewGoalAvailable()) action_.cancel();
-    });
     server_.start();
   }
 
-  void spin() { robot_.spin(); }
+  void spin() {
+    robot_.spin([this] {
+      take_requests();
+      error_of([&] { action_.poll(); });
+    });
+  }
 
  private:
+  static ros::NodeHandle with_queue(ros::NodeHandle own, ros::CallbackQueue& queue) {
+    own.setCallbackQueue(&queue);
+    return own;
+  }
+
+  /// Goals and cancels that wait. They are in a queue of their own, so that they can be taken while
+  /// a step is planned.
+  void take_requests() {
+    requests_.callAvailable();
+    if (server_.isNewGoalAvailable()) {
+      action_.abandon();
+      server_.acceptNewGoal();
+      action_.begin();
+    }
+    if (server_.isPreemptRequested()) action_.cancel();
+  }
+
+  void take(const excavplan::RobotMessage& message) {
+    error_of([&] { action_.take(message); });
+    const excavplan::JobSession& session = action_.session();
+    if (early_.are_news(session)) ROS_WARN("%s", excavplan::early_text(session).c_str());
+  }
+
   excavplan::StepPort port() {
     excavplan::StepPort port;
     port.take_joints = [this] { robot_.take_joints(); };
+    port.take_requests = [this] { take_requests(); };
     port.now = [] { return time_now(); };
     port.step = [this](const std::string& json) { step_.publish(text_message(json)); };
     port.trajectory = [this](const excavplan::JointMotion& motion) {
@@ -83,9 +102,11 @@ class JobNode {
   }
 
   ros::Publisher step_, trajectory_;
+  ros::CallbackQueue requests_;
   actionlib::SimpleActionServer<DoStepAction> server_;
   excavplan::StepAction action_;
   RobotListener robot_;
+  excavplan::EarlyPoints early_;
   ros::ServiceServer service_;
 };
 

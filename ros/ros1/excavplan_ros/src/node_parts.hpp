@@ -75,11 +75,13 @@ class RobotListener {
   /// a plan, within its call.
   void take_joints() { joint_queue_.callAvailable(); }
 
-  void spin() {
-    constexpr double longest_wait = 0.02;  // for joint states [s]; ours
+  /// @param more  to be done at least every 20 ms (ours)
+  void spin(const std::function<void()>& more = [] {}) {
+    constexpr double longest_wait = 0.02;  // [s]
     while (ros::ok()) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(longest_wait));
       take_joints();
+      more();
     }
   }
 
