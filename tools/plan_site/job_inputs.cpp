@@ -104,8 +104,8 @@ void declare(Arguments& arguments, JobInputs& inputs, const std::string& words) 
   arguments.only_if({is({"new", "done"}), "it is of plan-site new and done"}, [&] {
     arguments.text("base", "X,Y,HEADING", inputs.base,
                    "where the machine stands: of new when the job begins, in the heading in which "
-                   "it works (default: before the trench); of done after a move, if not where it "
-                   "was sent [m,m,rad]");
+                   "it works (default: before the trench); of done if not where the step says "
+                   "[m,m,rad]");
   });
   arguments.only_if({is({"show", "estimate"}), "it is of plan-site show and estimate"},
                     [&] { arguments.report(inputs.report); });
