@@ -426,33 +426,6 @@ TEST(SiteJob, AMachineThatCanDigNothingOffItsPlaceGoesThereOnceMore) {
       << name(step.what) << ' ' << step.base.x;
 }
 
-/// A pit beside a truck, and a machine that always comes to stand out of reach of it.
-TEST(SiteJob, AMachineThatMissesThePlaceToDumpFromIsNotSentThereForEver) {
-  PlainSiteFolder site;
-  site.site["design"]["floor_width_m"] = 3.6;
-  TrenchJob of{site, truth_cell};
-  of.settings.design.dump_areas.clear();
-  const SitePolygon bed = {{-6.0, 7.5}, {8.0, 7.5}, {8.0, 10.0}, {-6.0, 10.0}};
-  of.settings.design.truck = JobTruck{bed, 2.0, 9000.0};
-  SiteJob job = of.begin();
-  JobStep step = job.next();
-  int same = 0, steps = 0;
-  for (BasePose last; step.what == JobAction::move && steps < 200; ++steps, step = job.next()) {
-    same = step.base.x == last.x && step.base.y == last.y ? same + 1 : 1;
-    ASSERT_LE(same, 4);
-    last = step.base;
-    StepReport report;
-    report.base = step.base;
-    report.base->y -= 1.5;
-    job.done(step.id, report);
-  }
-  EXPECT_EQ(step.what, JobAction::stop);
-  EXPECT_EQ(
-      step.reason.rfind("what is left cannot be dug, as its soil has no place within reach: ", 0),
-      0U)
-      << step.reason;
-}
-
 TEST(SiteJob, AKeepOutIsNotCut) {
   ShortTrench site;
   const double depth = 0.15;

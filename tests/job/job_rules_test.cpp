@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/job/site_job.hpp>
+
+#include "job/job_map.hpp"
+#include "job/job_record.hpp"
+#include "job/job_stations.hpp"
+#include "job/trench_job.hpp"
+
+/// @file
+/// Rules by which a job goes from step to step, each on ground and at a place made by hand.
+
+namespace excavplan::test {
+namespace {
+
+constexpr double wide = 3.6, narrow = 1.0;  // [m]
+constexpr double tolerance = 0.03;          // of plain sites [m]
+constexpr double not_seen = -9999.0;        // in their grids
+constexpr int no_more = 1000;               // digs or passes in vain
+
+/// A pit from x = 2 to 6 with upright walls in level ground.
+struct PitSite : PlainSiteFolder {
+  using Change = std::function<void(PlainSiteFolder&)>;
+  PitSite(double width, double depth, const Change& change = {}) {
+    site["design"]["floor_width_m"] = width;
+    site["design"]["depth_m"] = depth;
+    site["design"]["floor_z_at_middle_m"] = -depth;
+    site["dump_areas"][0]["polygon"] = {{-4.0, 3.0}, {8.0, 3.0}, {8.0, 6.8}, {-4.0, 6.8}};
+    if (change) change(*this);
+  }
+};
+
+class PitJob {
+ public:
+  explicit PitJob(double width, double depth = 0.4, const PitSite::Change& change = {})
+      : half_(0.5 * width), site_(width, depth, change) {
+    const JobMap map = map_of(of_.settings, first_.bank);
+    frame_ = work_frame(of_.settings, map, first_);
+    stations = stations_of(frame_, of_.settings);
+  }
+
+  /// A scan shows the pit as deep as that; the ground beside it is level.
+  void dig(const std::function<double(double, double)>& height) {
+    auto cloud = std::make_shared<Cloud>();
+    for (double x = -7.975; x < 10.0; x += 0.05) {
+      for (double y = -6.975; y < 7.0; y += 0.05) {
+        const bool is_in = x > 2.0 && x < 6.0 && std::abs(y) < half_;
+        cloud->points.emplace_back(x, y, is_in ? height(x, y) : 0.0);
+      }
+    }
+    Scan scan;
+    scan.clouds = {cloud};
+    job_.look(scan, trial_begin + 60.0);
+  }
+
+  /// Puts the machine at a station, and changes what the job remembers.
+  void stand_at(
+      std::size_t station, const std::function<void(JobRecord&)>& change = [](auto&) {}) {
+    { const SiteJob ended = std::move(job_); }
+    JobRecord record = load_record(of_.path());
+    record.present.reset();
+    record.station = station;
+    record.base = base_at(frame_, stations[station], first_, of_.settings.site.machine);
+    record.has_arrived = true;
+    change(record);
+    save_record(of_.path(), record);
+    job_ = of_.resume();
+  }
+
+  JobStep next() { return job_.next(); }
+  JobRecord record() const { return load_record(of_.path()); }
+  JobProgress progress() const { return job_.progress(); }
+
+  std::vector<JobStation> stations;
+
+ private:
+  double half_;  ///< of the width [m]
+  PitSite site_;
+  TrenchJob of_{site_};
+  SiteJob job_ = of_.begin();
+  Terrain first_ = job_.ground();  ///< before the job
+  JobFrame frame_;
+};
+
+/// What comes after so many passes from a place whose floor is still too high.
+JobAction after_passes(PitJob pit, std::size_t station, int passes) {
+  pit.dig([](double, double) { return -0.34; });
+  pit.stand_at(station, [&](JobRecord& record) {
+    record.fruitless_digs = no_more;
+    record.passes_here = passes;
+  });
+  return pit.next().what;
+}
+
+TEST(JobRules, AWidePitTakesTwiceThePassesOfATrench) {
+  EXPECT_EQ(after_passes(PitJob(wide), 4, 15), JobAction::finish);
+  EXPECT_NE(after_passes(PitJob(wide), 4, 16), JobAction::finish);
+  EXPECT_NE(after_passes(PitJob(narrow), 0, 8), JobAction::finish);
+}
+
+TEST(JobRules, ATrenchWhoseWallsLeanBackTakesAsMany) {
+  const auto lean = [](PlainSiteFolder& of) {
+    of.site["design"]["wall_horizontal_per_vertical"] = 1.0;
+  };
+  EXPECT_EQ(after_passes(PitJob(narrow, 0.4, lean), 0, 15), JobAction::finish);
+  EXPECT_NE(after_passes(PitJob(narrow, 0.4, lean), 0, 16), JobAction::finish);
+}
+
+/// What comes after the last place before the far end is dug from beyond, where a strip there is
+/// too high and the rest so far, in tolerances.
+JobStep after_last_place(double width, double above) {
+  PitJob pit(width);
+  pit.dig([&](double x, double y) {
+    const bool is_strip = x > 5.5 && x < 5.65 && y < 0.1 * width;
+    return -0.4 + (is_strip ? 1.3 : above) * tolerance;
+  });
+  EXPECT_EQ(pit.progress().p95 > 0.9 * tolerance, above > 0.9);
+  EXPECT_TRUE(pit.progress().is_finished);
+  pit.stand_at(pit.stations.size() - 1,
+               [](JobRecord& record) { record.fruitless_digs = record.fruitless = no_more; });
+  return pit.next();
+}
+
+TEST(JobRules, AWidePitIsDugFromBeyondUnlessItIsSurelyInShape) {
+  const JobStep step = after_last_place(wide, 0.93);
+  EXPECT_EQ(step.what, JobAction::move);
+  EXPECT_GT(step.base.x, 7.0);
+  EXPECT_EQ(after_last_place(wide, 0.88).what, JobAction::stop);
+  EXPECT_EQ(after_last_place(narrow, 0.93).what, JobAction::stop);
+}
+
+TEST(JobRules, AMachineLeavesWhereItsDigsBroughtTheEdgeNear) {
+  for (const double away : {0.3, 1.5}) {
+    PitJob pit(wide, 1.0);
+    pit.stand_at(0);
+    const double edge = pit.record().base.x + zx120().track_front + away;
+    pit.dig([&](double x, double) { return x > edge && x < edge + 1.0 ? -1.0 : 0.0; });
+    pit.stand_at(0);
+    EXPECT_EQ(pit.next().what, away < 1.0 ? JobAction::move : JobAction::dig) << away;
+  }
+}
+
+/// A bite of some 50 kg would still come off the bench.
+TEST(JobRules, ABenchIsLeftForTheNextWhereOnlyABiteWouldTakeIt) {
+  PitJob pit(wide, 1.2);
+  pit.dig([](double x, double) { return x > 3.0 ? -0.28 : 0.0; });
+  pit.stand_at(0);
+  const JobStep step = pit.next();
+  EXPECT_EQ(step.what, JobAction::dig);
+  EXPECT_EQ(pit.record().bench, 1);
+  EXPECT_GT(step.predicted.payload_mass, 300.0);
+}
+
+/// The dig from where the front swings over ground beside the pit that no scan saw, from here on.
+struct BesideUnseen : PitJob {
+  explicit BesideUnseen(double from)
+      : PitJob(wide, 1.2, [from](PlainSiteFolder& of) {
+          of.height = [from](double x, double y) {
+            return x > from && y > 1.9 && y < 2.9 ? not_seen : 0.0;
+          };
+        }) {
+    stand_at(0);
+    step = next();
+    laid_aside = record().barren.size();
+  }
+  JobStep step;
+  std::size_t laid_aside = 0;
+};
+
+TEST(JobRules, ADigThatIsNotTrustedIsLaidAsideForAnother) {
+  const BesideUnseen none(9.0), far(5.6);
+  EXPECT_TRUE(none.step.trustworthy);
+  EXPECT_EQ(none.laid_aside, 0U);
+  EXPECT_TRUE(far.step.trustworthy);
+  EXPECT_EQ(far.laid_aside, 1U);
+  EXPECT_LT(far.step.path.start_x, none.step.path.start_x - 0.5);
+}
+
+TEST(JobRules, ADigThatIsNotTrustedIsOfferedIfThereIsNoOther) {
+  const BesideUnseen all(5.0);
+  EXPECT_EQ(all.step.what, JobAction::dig);
+  EXPECT_FALSE(all.step.trustworthy);
+  EXPECT_EQ(all.laid_aside, 0U);
+}
+
+/// Steps of a job in a pit beside a truck, whose machine always comes to stand out of reach of it.
+std::vector<JobStep> steps_out_of_reach() {
+  const PitSite site(wide, 0.4);
+  TrenchJob of{site, truth_cell};
+  of.settings.design.dump_areas.clear();
+  const SitePolygon bed = {{-6.0, 7.5}, {8.0, 7.5}, {8.0, 10.0}, {-6.0, 10.0}};
+  of.settings.design.truck = JobTruck{bed, 2.0, 9000.0};
+  SiteJob job = of.begin();
+  std::vector<JobStep> steps = {job.next()};
+  while (steps.back().what == JobAction::move && steps.size() < 200) {
+    StepReport report;
+    report.base = steps.back().base;
+    report.base->y -= 1.5;
+    job.done(steps.back().id, report);
+    steps.push_back(job.next());
+  }
+  return steps;
+}
+
+TEST(JobRules, AMachineThatMissesEveryPlaceGoesToEachAFewTimesAndStops) {
+  const std::vector<JobStep> steps = steps_out_of_reach();
+  int times = 0, rounds = 0;
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    const BasePose& base = steps[i].base;
+    const bool is_same = i > 0 && base.x == steps[i - 1].base.x && base.y == steps[i - 1].base.y;
+    times = is_same ? times + 1 : 1;
+    ASSERT_LE(times, 4);
+    const bool was_beyond = i > 0 && steps[i - 1].base.x > 7.0;
+    if (base.x > 7.0 && !was_beyond) ++rounds;
+  }
+  EXPECT_EQ(rounds, 3) << "beyond the far end: once, and twice more in turn with the near end";
+  EXPECT_EQ(steps.back().what, JobAction::stop);
+  const std::string reason = "what is left cannot be dug, as its soil has no place within reach: ";
+  EXPECT_EQ(steps.back().reason.rfind(reason, 0), 0U) << steps.back().reason;
+}
+
+}  // namespace
+}  // namespace excavplan::test
