@@ -58,9 +58,11 @@ inline std::string early_text(const JobSession& session) {
   return "points were measured before the motion was over and are left out: " + describe(session);
 }
 
-/// Whether that is to be told now: once of each scan.
+/// Remembers whether early points of a scan were told.
 class EarlyPoints {
  public:
+  /// Whether they are to be told now: once of each scan. @param session  a DigCycleSession or
+  /// JobSession
   template <typename Session>
   bool are_news(const Session& session) {
     const bool were_told = std::exchange(are_told_, session.early_scans() > 0);
