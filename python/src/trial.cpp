@@ -265,6 +265,7 @@ void bind_trial_results(py::module_& module) {
       .def_readonly("moves", &JobTrial::moves)
       .def_readonly("scans", &JobTrial::scans)
       .def_readonly("stalls", &JobTrial::stalls)
+      .def_readonly("untrusted", &JobTrial::untrusted, "Steps done though they are not trusted.")
       .def_readonly("energy", &JobTrial::energy, "Of cycles and moves [J].")
       .def_readonly("time", &JobTrial::time, "Of cycles, moves, scans and waits [s].")
       .def_readonly("planning_time", &JobTrial::planning_time, "By the clock [s].")
