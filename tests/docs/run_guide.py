@@ -117,9 +117,9 @@ def left_out(words, options):
 
 
 def run_page(reader, options):
-    """Messages about blocks that do not do what the page says, and how many ran."""
+    """Messages about blocks that do not do what the page says, how many there are, and how many ran."""
     page = options.page
-    failures, ran = [], 0
+    failures, found, ran = [], 0, 0
     for language, words, content, expected, line in blocks(page.read_text(encoding="utf-8")):
         place = f"{page.name}:{line}"
         if language != "sh":
@@ -128,6 +128,7 @@ def run_page(reader, options):
             elif language == "text":
                 failures.append(f"{place}: is right behind no block of commands")
             continue
+        found += 1
         failures += [f"{place}: unknown word '{word}'" for word in words if not known(word)]
         if left_out(words, options) or lacks(words):
             print(f"not run: {place} {' '.join(words)}")
@@ -141,7 +142,7 @@ def run_page(reader, options):
             failures.append(f"{place}: exit code {code}, not {stated_code}\n{content}{printed}")
         elif expected is not None and not matches(expected.splitlines(), printed.splitlines()):
             failures.append(f"{place}: prints something else than the page says:\n{printed}")
-    return failures, ran
+    return failures, found, ran
 
 
 def options_of(words):
@@ -160,8 +161,8 @@ def main():
         if options.clone:
             clone(Path(folder) / "excavplan", *options.clone)
             path = f"{options.clone[0]}:{path}" if options.on_path else path
-        failures, ran = run_page(Reader(Path(folder), path), options)
-    if ran == 0:
+        failures, found, ran = run_page(Reader(Path(folder), path), options)
+    if found == 0 or (options.all and ran == 0):
         failures.append(f"{options.page}: no block was run")
     print(*failures, f"{ran} blocks of {options.page.name} run", sep="\n")
     sys.exit(1 if failures else 0)

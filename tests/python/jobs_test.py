@@ -56,7 +56,7 @@ class Jobs(unittest.TestCase):
         self.assertTrue(0.0 < low < step.predicted.payload_mass < high)
         low, high = step.predicted.energy_interval
         self.assertTrue(0.0 < low < step.predicted.energy < high)
-        self.assertRegex(repr(step), r"^<JobStep \d+: dig \d+ kg \(\d+ \.\. \d+\), [\d.]+ kJ .* s>$")
+        self.assertRegex(repr(step), r"^<JobStep \d+: dig [\d.]+ kg \([\d.]+ \.\. [\d.]+\), [\d.]+ kJ .* s>$")
         frame = numbers(step.site_from_line)
         self.assertAlmostEqual(math.hypot(frame[0][0], frame[1][0]), 1.0)
 
