@@ -198,8 +198,9 @@ class Build {
     LibraryAnswer found;  ///< after those from its neighbours
     Interpolation to_next_density;
     Interpolation to_next_slope;
-    std::size_t searched = 0;  ///< task after which `first` is known
-    std::size_t settled = 0;   ///< task after which `found` is final
+    std::size_t searched = 0;               ///< task after which `first` is known
+    std::size_t settled = 0;                ///< task after which `found` is final
+    std::vector<std::size_t> readers = {};  ///< tasks that look at `found` as it is then
   };
 
   /// An entry, and before it those that its search starts from.
@@ -285,8 +286,8 @@ class Build {
   /// @param other  the neighbour on the other side; `next` again if there is none, or no matter
   void improve(std::size_t own, std::size_t next, std::size_t other) {
     Entry& entry = *entries_[own];
-    const Entry& near = *entries_[next];
-    const Entry& far = *entries_[other];
+    Entry& near = *entries_[next];
+    Entry& far = *entries_[other];
     const auto task = [&entry, &near, &far, this] {
       LibraryTask improve{entry.place};
       improve.known = entry.found.rank;
@@ -302,16 +303,21 @@ class Build {
       improve.starts = line.starts;
       return improve.known < line.expected ? to_text(improve) : std::string();
     };
-    entry.settled = queue_.add(
-        {{entry.settled, near.settled, far.settled}, task, [&entry, this](const std::string& text) {
-           LibraryAnswer answer = read_answer(job_, entry.place, "task", text);
-           answer.evaluations += entry.found.evaluations;
-           if (answer.rank > entry.found.rank) {
-             entry.found = answer;
-           } else {
-             entry.found.evaluations = answer.evaluations;
-           }
-         }});
+    // Only after those that look at what it changes: else their order would decide what they see.
+    std::vector<std::size_t> after = std::exchange(entry.readers, {});
+    after.insert(after.end(), {entry.settled, near.settled, far.settled});
+    entry.settled = queue_.add({after, task, [&entry, this](const std::string& text) {
+                                  LibraryAnswer answer =
+                                      read_answer(job_, entry.place, "task", text);
+                                  answer.evaluations += entry.found.evaluations;
+                                  if (answer.rank > entry.found.rank) {
+                                    entry.found = answer;
+                                  } else {
+                                    entry.found.evaluations = answer.evaluations;
+                                  }
+                                }});
+    near.readers.push_back(entry.settled);
+    far.readers.push_back(entry.settled);
   }
 
   /// The entries in a line along density or slope.
