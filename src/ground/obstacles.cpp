@@ -56,10 +56,12 @@ class ObstacleFinder {
     CellMask found =
         part_.unaryExpr([&](int part) -> bool { return stands[static_cast<std::size_t>(part)]; });
     const ArrayXXd ground = (known_ && !steep_ && !found).select(z_, -infinity);
-    const ArrayXXd beside = highest_within(ground, cells_in(own_rim, cell_));
-    const ArrayXXd near = highest_within(ground, cells_in(around, cell_));
-    const ArrayXXd level =
-        (beside > -infinity).select(beside, (near > -infinity).select(near, foot_));
+    ArrayXXd level = highest_within(ground, cells_in(own_rim, cell_));
+    if ((steep_ && level == -infinity).any()) {
+      const ArrayXXd near = highest_within(ground, cells_in(around, cell_));
+      const ArrayXXd farther = (near > -infinity).select(near, foot_);
+      level = (level > -infinity).select(level, farther).eval();
+    }
     return found || (steep_ && z_ - level > least_obstacle);
   }
 

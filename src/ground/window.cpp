@@ -10,29 +10,56 @@ namespace {
 
 using Eigen::Index;
 
-/// Highest of each column's neighbours within so many columns to both sides. What is highest within
-/// a reach is known of each column; of the reach itself and two beside it, it is that of thrice as
-/// much.
-Eigen::ArrayXXd highest_beside(Eigen::ArrayXXd z, Index cells) {
-  const Index last = z.cols() - 1;
-  for (Index reach = 0; reach < std::min(cells, last);) {
+// What is highest within a reach is known of each cell; of the reach itself and two beside it, it
+// is that of thrice as much. Beyond the first and the last cell these stand for themselves.
+
+/// Calls `widen(shift)` until the reach is so many cells of so many.
+template <typename Widen>
+void widen_to(Index cells, Index of, Widen widen) {
+  for (Index reach = 0; reach < std::min(cells, of - 1);) {
     const Index shift = std::min(2 * reach + 1, cells - reach);
-    const Eigen::ArrayXXd within = z;
-    for (Index col = 0; col <= last; ++col) {
-      z.col(col) = within.col(col)
-                       .max(within.col(std::max<Index>(col - shift, 0)))
-                       .max(within.col(std::min(col + shift, last)));
-    }
+    widen(std::min(shift, of - 1));
     reach += shift;
   }
-  return z;
+}
+
+/// Of each column's neighbours within so many columns to both sides.
+void take_highest_beside(Eigen::ArrayXXd& z, Index cells) {
+  const Index last = z.cols() - 1;
+  Eigen::ArrayXXd wide(z.rows(), z.cols());
+  widen_to(cells, z.cols(), [&](Index shift) {
+    for (Index col = 0; col <= last; ++col) {
+      wide.col(col) = z.col(col)
+                          .max(z.col(std::max<Index>(col - shift, 0)))
+                          .max(z.col(std::min(col + shift, last)));
+    }
+    z.swap(wide);
+  });
+}
+
+/// Likewise of each cell's neighbours in its column.
+void take_highest_above(Eigen::ArrayXXd& z, Index cells) {
+  Eigen::ArrayXd narrow(z.rows());
+  for (Index col = 0; col < z.cols(); ++col) {
+    auto wide = z.col(col);
+    widen_to(cells, z.rows(), [&](Index shift) {
+      narrow = wide;
+      const Index inner = narrow.size() - shift;
+      wide.head(shift) = wide.head(shift).max(narrow(0));
+      wide.tail(shift) = wide.tail(shift).max(narrow(narrow.size() - 1));
+      wide.tail(inner) = wide.tail(inner).max(narrow.head(inner));
+      wide.head(inner) = wide.head(inner).max(narrow.tail(inner));
+    });
+  }
 }
 
 }  // namespace
 
 Eigen::ArrayXXd highest_within(const Eigen::ArrayXXd& z, Index cells) {
-  const Eigen::ArrayXXd across = highest_beside(z.transpose(), cells).transpose();
-  return highest_beside(across, cells);
+  Eigen::ArrayXXd highest = z;
+  take_highest_above(highest, cells);
+  take_highest_beside(highest, cells);
+  return highest;
 }
 
 AreaSums::AreaSums(const Eigen::ArrayXXd& field)

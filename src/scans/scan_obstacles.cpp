@@ -60,8 +60,12 @@ class ObstacleCells {
     y_(at->row, at->col) = p.y();
   }
 
-  /// After all were added.
-  void begin_below() { top_ = highest_within(highest_.z, 1); }
+  /// After all were added. @return whether there is any obstacle
+  bool find() {
+    top_ = highest_within(highest_.z, 1);
+    found_ = find_obstacles(shape());
+    return found_.any();
+  }
   void add_below(const Vector3d& p) {
     const auto at = cell_at(highest_, p.x(), p.y());
     if (!at || p.z() > top_(at->row, at->col) - level) return;
@@ -71,18 +75,15 @@ class ObstacleCells {
 
   /// The tops of obstacles on the cells of the map that these were made for.
   void put_obstacles(const HeightMap& grid, SeenTops& tops) const {
-    HeightMap shape = highest_;
-    shape.z = (highest_.z > nothing).select(highest_.z, top_);
-    shape.z = (shape.z > nothing).select(shape.z, std::nan("")).eval();
-    const CellMask found = find_obstacles(shape);
-    const CellMask seen = found && highest_.z > nothing;
+    const ArrayXXd& z = highest_.z;
+    const CellMask seen = found_ && z > nothing;
     const ArrayXXd next = highest_within(below_, 1);
     const ArrayXXd above = (next_ray * (top_ - next)).min(most_above);
-    const CellMask hangs = hanging(found, next);
+    const CellMask hangs = hanging(next);
     Layers all;
-    all.tops = widened(seen.select(shape.z + above, nothing));
-    all.returns = widened(seen.select(shape.z, nothing));
-    all.thin = widened((several(hangs) || posts(seen, next)).select(shape.z, nothing));
+    all.tops = widened(seen.select(z + above, nothing));
+    all.returns = widened(seen.select(z, nothing));
+    all.thin = widened((several(hangs) || posts(seen, next)).select(z, nothing));
     for (const Wire& wire : find_wires(returns_of(hangs))) enter(wire, all);
     tops.obstacles = on(grid, all.tops);
     tops.returns = on(grid, all.returns);
@@ -94,6 +95,14 @@ class ObstacleCells {
   struct Layers {
     ArrayXXd tops, returns, thin;
   };
+
+  /// The highest of each cell, or of those beside it; NaN where there is none.
+  HeightMap shape() const {
+    HeightMap shape = highest_;
+    shape.z = (highest_.z > nothing).select(highest_.z, top_);
+    shape.z = (shape.z > nothing).select(shape.z, std::nan("")).eval();
+    return shape;
+  }
 
   ArrayXXd on(const HeightMap& grid, const ArrayXXd& values) const {
     ArrayXXd fine(grid.z.rows(), grid.z.cols());
@@ -144,11 +153,11 @@ class ObstacleCells {
   /// Obstacles with nothing below them but the ground, and ground all around: not the edge of a
   /// roof.
   /// @param next  level below the highest of each cell and those beside it
-  CellMask hanging(const CellMask& found, const ArrayXXd& next) const {
+  CellMask hanging(const ArrayXXd& next) const {
     const ArrayXXd& z = highest_.z;
     const ArrayXXd ground = this->ground();
-    const CellMask hangs = found && z > top_ - level && next < ground + low;
-    const ArrayXXd bodies = (found && !hangs).select(ArrayXXd::Ones(z.rows(), z.cols()), 0.0);
+    const CellMask hangs = found_ && z > top_ - level && next < ground + low;
+    const ArrayXXd bodies = (found_ && !hangs).select(ArrayXXd::Ones(z.rows(), z.cols()), 0.0);
     const ArrayXXd beside_body = highest_within(bodies, cells(0.35));
     return those(hangs && beside_body <= 0.0,
                  [&](Cell at) { return ground_around(at, ground(at.row, at.col) + low); });
@@ -228,6 +237,7 @@ class ObstacleCells {
   Index parts_ = 1, rim_ = 0;
   ArrayXXd x_, y_;  ///< of the highest return
   ArrayXXd top_;    ///< of a cell and those beside it
+  CellMask found_;  ///< obstacles
   ArrayXXd below_;  ///< highest return of a cell a level below that
 };
 
@@ -253,13 +263,17 @@ SeenTops seen_tops(const Scan& scan, const HeightMap& grid, const TopsOptions& o
       z = std::max(z, p.z());
     }
   });
-  cells.begin_below();
+  tops.highest = (tops.highest > nothing).select(tops.highest, std::nan("")).eval();
+  if (!cells.find()) {
+    tops.obstacles = tops.returns = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), std::nan(""));
+    tops.thin = CellMask::Constant(grid.z.rows(), grid.z.cols(), false);
+    return tops;
+  }
   visit_scan(scan, [&](const std::vector<Vector3d>& points) {
     for (const Vector3d& p : points) {
       if (counts(p)) cells.add_below(p);
     }
   });
-  tops.highest = (tops.highest > nothing).select(tops.highest, std::nan("")).eval();
   cells.put_obstacles(grid, tops);
   return tops;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -40,10 +41,13 @@ Eigen::Vector3d normal_of(const Cloud& cloud, const Eigen::AlignedBox3d& box) {
   return normal.z() < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
-std::vector<double> sorted_heights(const std::vector<Eigen::Vector3d>& points) {
+/// @param height  of a point
+template <typename Height>
+std::vector<double> sorted_heights(const std::vector<Eigen::Vector3d>& points,
+                                   const Height& height) {
   std::vector<double> heights;
   heights.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) heights.push_back(point.z());
+  for (const Eigen::Vector3d& point : points) heights.push_back(height(point));
   std::sort(heights.begin(), heights.end());
   return heights;
 }
@@ -210,15 +214,19 @@ bool are_strewn(const std::vector<Eigen::Vector3d>& points, const Chosen& is_cho
 class CloudOutline {
  public:
   explicit CloudOutline(const Scan& scan)
-      : file_from_site_(scan.site_from_scan.inverse()), unit_(scan.unit) {}
+      : is_moved_(scan.site_from_scan != Eigen::Matrix4d::Identity() || scan.unit != 1.0),
+        file_from_site_(scan.site_from_scan.inverse()),
+        unit_(scan.unit) {}
 
   void add(const std::vector<Eigen::Vector3d>& points);
   ScanOutline result() const;
 
  private:
-  /// Takes the points without data out of a sample.
-  void drop_no_data(std::vector<Eigen::Vector3d>& points, ScanOutline& outline) const;
+  /// Takes the points without data out of a sample. @return the heights of the others, sorted
+  std::vector<double> drop_no_data(std::vector<Eigen::Vector3d>& points,
+                                   ScanOutline& outline) const;
 
+  bool is_moved_;  ///< heights in the file are others than in the site's frame
   Eigen::Matrix4d file_from_site_;
   double unit_;
   ScanOutline outline_;
@@ -233,33 +241,32 @@ void CloudOutline::add(const std::vector<Eigen::Vector3d>& points) {
   sample_.add(points);
 }
 
-void CloudOutline::drop_no_data(std::vector<Eigen::Vector3d>& points, ScanOutline& outline) const {
+std::vector<double> CloudOutline::drop_no_data(std::vector<Eigen::Vector3d>& points,
+                                               ScanOutline& outline) const {
+  const auto height_in_site = [](const Eigen::Vector3d& point) { return point.z(); };
   const auto height_in_file = [&](const Eigen::Vector3d& point) {
-    return (file_from_site_ * point.homogeneous()).z() / unit_;
+    return is_moved_ ? (file_from_site_ * point.homogeneous()).z() / unit_ : point.z();
   };
-  std::vector<double> heights;
-  heights.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) heights.push_back(height_in_file(point));
-  std::sort(heights.begin(), heights.end());
-  outline.no_data = no_data_in(heights);
-  const auto is_drawn = [&](double none) {  // a level thing at height 0
-    return none == 0.0 && !are_strewn(points, [&](const Eigen::Vector3d& point) {
-             return is_no_data(height_in_file(point), {none});
-           });
+  const auto is_none = [&height_in_file](std::vector<double> none) {
+    return [&height_in_file, none = std::move(none)](const Eigen::Vector3d& point) {
+      return is_no_data(height_in_file(point), none);
+    };
   };
-  outline.no_data.erase(std::remove_if(outline.no_data.begin(), outline.no_data.end(), is_drawn),
-                        outline.no_data.end());
-  if (outline.no_data.empty()) return;
+  std::vector<double> heights = sorted_heights(points, height_in_file);
+  std::vector<double>& none = outline.no_data;
+  none = no_data_in(heights);
+  const auto is_drawn = [&](double height) {  // a level thing at height 0
+    return height == 0.0 && !are_strewn(points, is_none({height}));
+  };
+  none.erase(std::remove_if(none.begin(), none.end(), is_drawn), none.end());
+  if (none.empty()) return is_moved_ ? sorted_heights(points, height_in_site) : heights;
   const auto before = static_cast<double>(points.size());
-  points.erase(std::remove_if(points.begin(), points.end(),
-                              [&](const Eigen::Vector3d& point) {
-                                return is_no_data(height_in_file(point), outline.no_data);
-                              }),
-               points.end());
+  points.erase(std::remove_if(points.begin(), points.end(), is_none(none)), points.end());
   outline.no_data_share = 1.0 - static_cast<double>(points.size()) / before;
   outline.no_data_points = static_cast<std::uint64_t>(
       std::llround(outline.no_data_share * static_cast<double>(outline.finite_points)));
   outline.finite_points -= outline.no_data_points;
+  return sorted_heights(points, height_in_site);
 }
 
 ScanOutline CloudOutline::result() const {
@@ -271,7 +278,7 @@ ScanOutline CloudOutline::result() const {
   for (const Eigen::Vector3d& point : sample_.values()) {
     if (point.allFinite()) cloud.points.push_back(point);
   }
-  drop_no_data(cloud.points, outline);
+  const std::vector<double> heights = drop_no_data(cloud.points, outline);
   if (cloud.points.empty()) return outline;
   const PointSource source = points_of(cloud);
   const Eigen::AlignedBox3d box = usual_box(source, cloud.points.size());
@@ -280,7 +287,7 @@ ScanOutline CloudOutline::result() const {
   outline.density = points_per_area(source, cloud.points.size(), *outline.extent) *
                     (static_cast<double>(outline.finite_points) / sampled);
   outline.height = box.sizes().z();
-  outline.height_step = height_step_of(sorted_heights(cloud.points));
+  outline.height_step = height_step_of(heights);
   const auto along_z = std::count_if(
       cloud.points.begin(), cloud.points.end(),
       [](const Eigen::Vector3d& point) { return is_along_z(point, nearest_seen, farthest_seen); });

@@ -200,6 +200,25 @@ Rectangle own_place(const Machine& machine) {
   return {-rear, -half, front, half};
 }
 
+/// The ground of an extent and what stands on it.
+struct SeenGround {
+  SeenGround(const Scan& scan, const Rectangle& extent, double cell_size)
+      : points(seen_of(scan, extent)),
+        cell(std::max(cell_size, cell_of(points))),
+        widest_gap(std::max(widest_filled, widest_filled_cells * cell)),
+        surface(surface_of(points, cell)),
+        ground(resampled(surface.height, extent, cell_size, widest_gap)),
+        terrain(terrain_with(ground, seen_tops(cropped(scan, extent, shaped), ground,
+                                               {cell_of(points), dig_ceiling, behind(extent)}))) {}
+
+  Seen points;
+  double cell;        ///< of the survey [m]
+  double widest_gap;  ///< over which heights are interpolated [m]
+  Surface surface;
+  HeightMap ground;
+  Terrain terrain;
+};
+
 }  // namespace
 
 ScannedTerrain terrain_from_scan(const Scan& given, const Rectangle& extent, double cell_size) {
@@ -207,32 +226,26 @@ ScannedTerrain terrain_from_scan(const Scan& given, const Rectangle& extent, dou
           "> 0 m and finite");
   std::optional<Warning> no_data;
   const Scan scan = of_data(given, &no_data);
-  const Seen seen = seen_of(scan, extent);
-  const double cell = std::max(cell_size, cell_of(seen));
-  const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
-  const Surface surface = surface_of(seen, cell);
-  const HeightMap ground = resampled(surface.height, extent, cell_size, widest_gap);
-  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
-                                  {cell_of(seen), dig_ceiling, behind(extent)});
-  ScannedTerrain result{terrain_with(ground, tops), scan.doubts};
+  const SeenGround seen(scan, extent, cell_size);
+  ScannedTerrain result{seen.terrain, scan.doubts};
   if (no_data) result.warnings.push_back(std::move(*no_data));
-  const double wide = std::sqrt(enough_for_two / seen.density);
-  const Surface& tested = wide > cell ? surface_of(seen, wide) : surface;
+  const double wide = std::sqrt(enough_for_two / seen.points.density);
+  const Surface& tested = wide > seen.cell ? surface_of(seen.points, wide) : seen.surface;
   if (auto both = overlaid(name_of(scan), tested, result.terrain)) {
     result.warnings.push_back(std::move(*both));
   }
-  if (const double unseen = unseen_area(ground); unseen > 0.0) {
+  if (const double unseen = unseen_area(seen.ground); unseen > 0.0) {
     result.warnings.emplace_back(WarningCode::unseen_ground,
                                  name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
                                      " m2 of the ground within reach, in gaps wider than " +
-                                     readable(widest_gap, 2) + " m; no dig is planned there");
+                                     readable(seen.widest_gap, 2) + " m; no dig is planned there");
   }
-  if (cell > cell_size) {
+  if (seen.cell > cell_size) {
     result.warnings.emplace_back(
         WarningCode::sparse_terrain,
-        name_of(scan) + ": " + readable(seen.density, 2) +
+        name_of(scan) + ": " + readable(seen.points.density, 2) +
             " points per m2 are too few for cells of " + readable(cell_size, 2) +
-            " m; heights are interpolated between cells of " + readable(cell, 2) + " m");
+            " m; heights are interpolated between cells of " + readable(seen.cell, 2) + " m");
   }
   result.terrain.doubts = result.warnings;
   return result;
@@ -262,7 +275,7 @@ HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
   const Rectangle extent = standing_extent(machine);
   const double cell_size = 2.0 * usual_cell(machine);
   try {
-    return terrain_from_scan(scan, extent, cell_size).terrain.surface();
+    return SeenGround(of_data(scan), extent, cell_size).terrain.surface();
   } catch (const FrameError&) {  // a scan of the ground ahead alone
     return flat_ground(extent, cell_size, std::nan(""));
   }
