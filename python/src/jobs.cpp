@@ -364,6 +364,10 @@ void bind_looking(JobClass& job) {
           },
           "Of the last scan that was taken in.")
       .def_property_readonly(
+          "wall_warnings",
+          [](JobInPython& of) { return of.with([](SiteJob& own) { return own.wall_warnings(); }); },
+          "unstable_wall, if a wall of the design would not stand.")
+      .def_property_readonly(
           "settings", [](const JobInPython& of) { return of.settings(); }, "JobSettings.")
       .def(
           "report",

@@ -24,6 +24,7 @@
 #include "job/station_place.hpp"
 #include "job/step_motion.hpp"
 #include "job/step_search.hpp"
+#include "job/wall_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -64,6 +65,7 @@ constexpr int most_blocked = 4;   // digs from one place whose way is blocked, b
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
 constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
+constexpr double beside_wall = 1.0;          // of a dig, so that it is one at the wall [m]
 constexpr double after_stall = 0.7;          // of the depth of a cut
 constexpr double after_success = 1.1;        // likewise
 constexpr double shallowest_cut = 0.06;      // [m]
@@ -198,6 +200,10 @@ struct SiteJob::State {
   double allowance_of_passes() const;
   void foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const;
   bool check_motion(JobStep& step);
+  JobStep with_walls_checked(JobStep step) const;
+  WallTask wall_task() const {
+    return {settings, map, ground.expected(), record.base, record.learning.strength_factor(-1)};
+  }
   bool may_keep(double more) const;
   int most_passes_here() const {
     const bool has_shape_to_cut = frame.is_battered || stations[record.station].is_wide;
@@ -320,19 +326,22 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
 /// What would be driven into something is laid aside for another dig from here, and so is what is
 /// not to be trusted, if there is another one.
 std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
-  std::optional<std::size_t> before_doubtful;
+  std::optional<JobStep> first_doubtful;
+  JobRecord with_it;
   int doubtful = 0;
   for (int tries = 0; tries < most_blocked && doubtful < most_doubtful; ++tries) {
     auto step = best_step(finishing);
     if (!step) break;
     const bool is_blocked = !step->reason.empty();
     if (step->trustworthy && !is_blocked) return step;
-    if (!is_blocked && doubtful++ == 0) before_doubtful = record.barren.size();
+    if (!is_blocked && doubtful++ == 0) {
+      first_doubtful = step;
+      with_it = record;
+    }
     lay_aside(*step);
   }
-  if (!before_doubtful) return std::nullopt;
-  record.barren.resize(*before_doubtful);
-  return best_step(finishing);
+  if (first_doubtful) record = std::move(with_it);
+  return first_doubtful;
 }
 
 std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
@@ -406,6 +415,23 @@ bool SiteJob::State::check_motion(JobStep& step) {
   if (!motion.blocked.empty()) step.reason = motion.blocked;
   record.rests_at = motion.rests_at;
   return step.trustworthy;
+}
+
+/// A dig at a wall that will not stand is not to be trusted.
+JobStep SiteJob::State::with_walls_checked(JobStep step) const {
+  const DigLine line = dig_line(step.base, step.swung, step.lane);
+  std::vector<Eigen::Vector2d> dug;
+  for (const DigPose& pose : step.path.poses) {
+    if (pose.phase == DigPhase::lift) break;
+    dug.push_back(line.place(pose.bucket.x, 0.0));
+  }
+  if (dug.empty()) return step;
+  const double within = beside_wall + 0.5 * settings.site.machine.bucket.width_outside;
+  if (const auto wall = weakest_wall(wall_task(), {dug.front(), dug.back()}, within)) {
+    step.warnings.push_back(warning_of(*wall));
+    step.trustworthy = false;
+  }
+  return step;
 }
 
 /// Whether another pass can follow before the bucket is dumped.
@@ -531,7 +557,7 @@ JobStep SiteJob::State::decide() {
   const bool is_wide = stations[record.station].is_wide;
   if (is_wide && !record.carried && !stands_well()) return leave();
   if (record.fruitless_digs < (is_wide ? most_fruitless_wide : most_fruitless_digs)) {
-    if (auto step = dig_step(false)) return *std::move(step);
+    if (auto step = dig_step(false)) return with_walls_checked(*std::move(step));
   }
   const std::size_t passes = ground.unseen_digs(JobAction::finish);
   if (ground.unseen_digs() > passes || passes >= most_unseen_passes)
@@ -539,7 +565,7 @@ JobStep SiteJob::State::decide() {
   if (!here().leaves_passes && record.passes_here < most_passes_here() &&
       record.fruitless < most_fruitless && wants_passes(record.base) &&
       (!is_wide || is_dug_out(record.base))) {
-    if (auto step = dig_step(true)) return *std::move(step);
+    if (auto step = dig_step(true)) return with_walls_checked(*std::move(step));
   }
   if (auto step = dump_step()) return *std::move(step);
   if (passes > 0) return step_of(JobAction::scan, "to see what is left");
@@ -884,6 +910,13 @@ void SiteJob::undo() {
 }
 
 const std::vector<Warning>& SiteJob::scan_warnings() const { return state_->ground.warnings(); }
+
+std::vector<Warning> SiteJob::wall_warnings() const {
+  WallTask task = state_->wall_task();
+  task.base.reset();
+  const auto wall = weakest_wall(task);
+  return wall ? std::vector<Warning>{warning_of(*wall)} : std::vector<Warning>();
+}
 
 JobProgress SiteJob::progress() const { return state_->progress(); }
 

@@ -62,6 +62,7 @@ class Jobs(unittest.TestCase):
 
     def test_done_undo_and_resume(self):
         job, truth = self.begun(), self.truth()
+        self.assertEqual(job.wall_warnings, [])
         step = self.up_to_a_dig(job, truth)
         events = len(job.history)
         job.done(step.id + 7, ex.StepReport(time=truth.time))

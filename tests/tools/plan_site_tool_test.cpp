@@ -149,6 +149,15 @@ TEST_F(PlanSite, APlainSiteSaysAll) {
           {"new", folder.file("other"), "--site", file, "--soil", "clay"});
 }
 
+TEST_F(PlanSite, AWallThatMayFailIsTold) {
+  Words upright = order();
+  upright[3] = "2.5x1x1.5";
+  upright[11] = "sand";
+  const json begun = answer("plan-site", upright);
+  EXPECT_EQ(begun["trustworthy"], false);
+  EXPECT_TRUE(warns(begun, "unstable_wall")) << begun["warnings"];
+}
+
 TEST_F(PlanSite, AnEstimateOfWordsOfASiteAndOfAJob) {
   const json words = answer(
       "plan-site", {"estimate", "--trench", "2.5x1x0.4m", "--soil", "loam", "--density", "40"});

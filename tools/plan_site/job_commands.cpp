@@ -67,6 +67,8 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
   add_scan(order.first.report, job, outcome);
   add_progress(job, outcome);
+  for (const Warning& each : job.wall_warnings()) outcome.warnings.push_back(each);
+  outcome.json["trustworthy"] = true;  // unless a warning ends it
   for (const std::string& note : order.settings.surface.notes) console.note("design: " + note);
   return outcome;
 }

@@ -56,6 +56,10 @@ class SiteJob : public JobPlanner {
   void undo();
   /// Of the last scan that this object took in, such as scan_not_taken.
   const std::vector<Warning>& scan_warnings() const;
+  /// An unstable_wall, if a wall of the design would not stand in the soil as it is surely known,
+  /// with the spoil that lies beside it; its message tells of the weakest one. A dig at such a wall
+  /// has it among its warnings, with the load of the tracks.
+  std::vector<Warning> wall_warnings() const;
 
   /// How far the job is, by the ground as it is expected.
   JobProgress progress() const;

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/base/warning.hpp>
+#include <excavplan/ground/terrain.hpp>
+#include <excavplan/job/job_settings.hpp>
+
+#include "job/job_map.hpp"
+
+/// @file
+/// Whether the walls of a design stand once they are dug. Private to the project.
+
+namespace excavplan {
+
+/// What walls are looked at for.
+struct WallTask {
+  const JobSettings& settings;
+  const JobMap& map;
+  const Terrain& ground;         ///< with the spoil that lies on it
+  std::optional<BasePose> base;  ///< of a machine that stands by
+  double strength_factor = 1.0;  ///< on the soil's strength, as it is surely known
+};
+
+/// A wall of the design, in a section across its edge.
+struct DesignWall {
+  Eigen::Vector2d edge = Eigen::Vector2d::Zero();  ///< [m]
+  double height = 0.0;                             ///< [m]
+  double batter = 0.0;                             ///< run over height
+  double factor = 0.0;                             ///< of safety
+  double least = 0.0;                              ///< that it needs
+  std::optional<double> standing;                  ///< batter that has it
+};
+
+/// The one that lacks most of the factor that it needs.
+/// @param about   places, from the first straight to the next [m]; empty: all of the design
+/// @param within  of these [m]
+/// @return nothing if all stand
+std::optional<DesignWall> weakest_wall(const WallTask& task,
+                                       const std::vector<Eigen::Vector2d>& about = {},
+                                       double within = 0.0);
+
+/// An unstable_wall.
+Warning warning_of(const DesignWall& wall);
+
+}  // namespace excavplan
