@@ -236,6 +236,12 @@ void JobGround::save(long long number) const {
 
 void JobGround::load(long long number) {
   if (site_.updates() > number) site_.undo();
+  if (site_.updates() != number) {
+    throw Error(ErrorKind::bad_file, folder_ + ": its site has taken in " +
+                                         std::to_string(site_.updates()) + " scans, its job " +
+                                         std::to_string(number) +
+                                         ": files of it are missing, or of another job");
+  }
   scanned_ = load_ground(file_of(number));
   begin_at_scan();
 }

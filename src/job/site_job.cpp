@@ -225,6 +225,7 @@ struct SiteJob::State {
   }
   void go_back() noexcept;
   void require_whole() const;
+  void require_record() const;
   std::string first_file() const { return folder + '/' + first_ground_file; }
 
   std::string folder;
@@ -784,6 +785,15 @@ void SiteJob::State::require_whole() const {
                   "the job again once its folder can be written to");
 }
 
+/// That it can be of these settings.
+void SiteJob::State::require_record() const {
+  const auto& step = record.present;
+  const bool is_dig_of_it = !step || !step->digs() || record.planned;
+  const bool is_loaded = !step || !step->truck || settings.design.truck;
+  require(record.station < stations.size() && is_dig_of_it && is_loaded,
+          folder + ": its job is of another design, truck or machine than it is to go on with");
+}
+
 SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SiteJob::~SiteJob() = default;
 SiteJob::SiteJob(SiteJob&&) noexcept = default;
@@ -818,6 +828,7 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
   const GroundState first = load_ground(state->first_file());
   state->first = first.terrain;
   state->look_at_design();
+  state->require_record();
   state->log_from(first);
   state->hang_design();
   state->log->resume(state->record);

@@ -13,6 +13,7 @@
 #include <excavplan/job/job_motion.hpp>
 
 #include "ground/grid_cells.hpp"
+#include "job/job_record.hpp"
 #include "job/trench_job.hpp"
 #include "support/errors.hpp"
 
@@ -200,7 +201,38 @@ TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
   EXPECT_EQ(refusal([&](StepReport& each) { each.payload_mass = nan; }),
             "payload mass of step 2, dig [kg] is nan, must be in 0 .. 1000000");
   EXPECT_EQ(refusal([&](StepReport& each) { each.time = nan; }),
-            "time of step 2, dig [s] is nan, must be finite");
+            "time of step 2, dig [s] is nan, must be in -100000000000 .. 100000000000");
+  EXPECT_NE(refusal([&](StepReport& each) { each.time = 1e12; }), "no error");
+}
+
+TEST(SiteJob, ARecordThatCannotBeOfTheDesignIsRefused) {
+  BegunJob begun(1);
+  ASSERT_EQ(begun.job.next().what, JobAction::dig);
+  const std::string folder = begun.of.path();
+  { const SiteJob ended = std::move(begun.job); }
+  const JobRecord record = load_record(folder);
+  const auto refusal = [&](const auto& change) {
+    JobRecord other = record;
+    change(other);
+    save_record(folder, other);
+    return error_of([&] { begun.of.resume(); });
+  };
+  const std::string text = ": its job is of another design, truck or machine";
+  EXPECT_NE(refusal([](JobRecord& each) { each.station = 40; }).find(text), std::string::npos);
+  EXPECT_NE(refusal([](JobRecord& each) { each.planned.reset(); }).find(text), std::string::npos);
+  EXPECT_NE(refusal([](JobRecord& each) { each.present->truck = 1; }).find(text),
+            std::string::npos);
+  EXPECT_EQ(refusal([](JobRecord&) {}), "no error");
+}
+
+TEST(SiteJob, AJobWhoseSiteIsGoneIsRefused) {
+  BegunJob begun(0);
+  const std::string folder = begun.of.path();
+  { const SiteJob ended = std::move(begun.job); }
+  std::filesystem::remove(folder + "/site.json");
+  EXPECT_EQ(error_of([&] { begun.of.resume(); }, ErrorKind::bad_file),
+            folder + ": its site has taken in 0 scans, its job 1: files of it are missing, or of "
+                     "another job");
 }
 
 TEST(SiteJob, AJobWithTheMostThatIsBelievedCanBeReadAgain) {

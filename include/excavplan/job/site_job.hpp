@@ -35,7 +35,9 @@ class SiteJob : public JobPlanner {
   static SiteJob begin(const std::string& folder, JobSettings settings, const Scan& first,
                        double time);
   /// Goes on with the job of a folder.
-  /// @throws Error (bad_file) if it holds none, or a file of it is damaged
+  /// @param settings  that it was begun with
+  /// @throws Error (bad_file) if it holds none, or a file of it is damaged or not of this job;
+  /// (bad_input) if the job cannot be of these settings
   static SiteJob resume(const std::string& folder, JobSettings settings);
   ~SiteJob() override;
   SiteJob(SiteJob&&) noexcept;             ///< the other may only be destroyed then
