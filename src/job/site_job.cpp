@@ -652,7 +652,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
   }
   record.wants_scan = false;
   record.site_updates = ground.site().updates();
-  ground.save(record.site_updates);
+  ground.save(++record.grounds);
   ++record.progress.scans;
 }
 
@@ -760,7 +760,7 @@ void SiteJob::State::save_changed(const JobRecord& before, const JobStep& step,
 /// The ground of the record.
 void SiteJob::State::restore() {
   log->cut(record);
-  ground.load(record.site_updates);
+  ground.load(record.grounds, record.site_updates);
   for (const JobStep& dig : record.unseen) ground.expect(dig, record.learning.height_bias.mean);
 }
 
@@ -813,7 +813,8 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
   JobRecord& record = state->record;
   record.base = base_at(state->frame, {}, state->first, state->settings.site.machine);
   record.site_updates = state->ground.site().updates();
-  state->ground.save(record.site_updates);
+  record.grounds = record.site_updates;
+  state->ground.save(record.grounds);
   record.progress.design_volume = state->progress().left_volume;
   state->log_from(state->ground.site().ground());
   state->log->begin();

@@ -143,6 +143,25 @@ TEST(SiteJob, AScanThatIsRefusedChangesNothing) {
   EXPECT_GT(job.next().id, step.id);
 }
 
+TEST(SiteJob, AScanThatWasNotTakenIsTakenBack) {
+  BegunJob begun(3);
+  Scan scan = begun.of.truth.scan();
+  auto cloud = std::make_shared<Cloud>(*scan.clouds.front());
+  for (Eigen::Vector3d& point : cloud->points)
+    point.z() += std::sin(1.5 * point.x()) * std::cos(1.5 * point.y());
+  scan.clouds = {cloud};
+  const double left = begun.job.progress().left_volume;
+  begun.job.look(scan, begun.of.truth.time() + 1.0);
+  const auto& warnings = begun.job.scan_warnings();
+  ASSERT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const Warning& each) {
+    return each.code == WarningCode::scan_not_taken;
+  }));
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  begun.job.undo();
+  EXPECT_EQ(begun.job.progress().left_volume, left);
+}
+
 TEST(SiteJob, AMoveThatWasAskedForOutlastsAScan) {
   const ShortTrench site;
   TrenchJob of{site};
@@ -231,8 +250,9 @@ TEST(SiteJob, AJobWhoseSiteIsGoneIsRefused) {
   { const SiteJob ended = std::move(begun.job); }
   std::filesystem::remove(folder + "/site.json");
   EXPECT_EQ(error_of([&] { begun.of.resume(); }, ErrorKind::bad_file),
-            folder + ": its site has taken in 0 scans, its job 1: files of it are missing, or of "
-                     "another job");
+            folder +
+                ": its site has taken in 0 scans, its job 1: files of it are missing, or of "
+                "another job");
 }
 
 TEST(SiteJob, AJobWithTheMostThatIsBelievedCanBeReadAgain) {
