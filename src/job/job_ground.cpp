@@ -234,6 +234,14 @@ void JobGround::save(long long number) const {
   std::filesystem::remove(file_of(number - 2), none);
 }
 
+void JobGround::forget() noexcept {
+  try {
+    if (!site_.is_empty()) site_.undo();
+  } catch (const std::exception&) {  // what is told is why the job does not begin
+    return;
+  }
+}
+
 void JobGround::load(long long number, long long updates) {
   if (site_.updates() > updates) site_.undo();
   if (site_.updates() != updates) {

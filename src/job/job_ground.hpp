@@ -68,6 +68,8 @@ class JobGround {
   /// @param updates  that the site had taken in
   /// @throws Error (bad_file) if the site has taken in others
   void load(long long number, long long updates);
+  /// Takes the first scan back, as no job begins with it.
+  void forget() noexcept;
   /// Of the last scan taken in.
   const std::vector<Warning>& warnings() const { return warnings_; }
 

@@ -166,6 +166,7 @@ struct SiteJob::State {
                     settings.design.tolerance);
   }
 
+  void begin(const Scan& scan, double time);
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
   std::optional<JobStep> best_step(bool finishing);
@@ -794,6 +795,21 @@ void SiteJob::State::require_record() const {
           folder + ": its job is of another design, truck or machine than it is to go on with");
 }
 
+void SiteJob::State::begin(const Scan& scan, double time) {
+  (void)ground.take_in(event_of(scan, time, *settings.design.start));
+  first = ground.expected();
+  save_ground(first_file(), ground.site().ground());
+  look_at_design();
+  record.base = base_at(frame, {}, first, settings.site.machine);
+  record.site_updates = ground.site().updates();
+  record.grounds = record.site_updates;
+  ground.save(record.grounds);
+  record.progress.design_volume = progress().left_volume;
+  log_from(ground.site().ground());
+  log->begin();
+  save();
+}
+
 SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SiteJob::~SiteJob() = default;
 SiteJob::SiteJob(SiteJob&&) noexcept = default;
@@ -806,19 +822,13 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
                                      ": holds a job already: go on with it, or begin it in "
                                      "another folder");
   auto state = std::make_unique<State>(folder, std::move(settings));
-  (void)state->ground.take_in(event_of(first, time, *state->settings.design.start));
-  state->first = state->ground.expected();
-  save_ground(state->first_file(), state->ground.site().ground());
-  state->look_at_design();
-  JobRecord& record = state->record;
-  record.base = base_at(state->frame, {}, state->first, state->settings.site.machine);
-  record.site_updates = state->ground.site().updates();
-  record.grounds = record.site_updates;
-  state->ground.save(record.grounds);
-  record.progress.design_volume = state->progress().left_volume;
-  state->log_from(state->ground.site().ground());
-  state->log->begin();
-  state->save();
+  const bool is_new = state->ground.site().is_empty();
+  try {
+    state->begin(first, time);
+  } catch (...) {
+    if (is_new) state->ground.forget();
+    throw;
+  }
   return SiteJob(std::move(state));
 }
 

@@ -181,6 +181,16 @@ TEST(SiteJob, AFolderHoldsOneJob) {
   EXPECT_NE(error_of([&] { of.resume(); }).find("start is not told"), std::string::npos);
 }
 
+TEST(SiteJob, AFolderInWhichNoneCouldBeginTakesAnother) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  const DesignSurface design = of.settings.surface;
+  for (Eigen::Vector3d& point : std::get<Tin>(of.settings.surface.shape).points) point.z() += 5.0;
+  EXPECT_NE(error_of([&] { of.begin(); }).find("covers no cell of the ground"), std::string::npos);
+  of.settings.surface = design;
+  EXPECT_EQ(of.begin().next().what, JobAction::move);
+}
+
 TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
   BegunJob begun(0);
   const auto refusal = [&](const auto& change) {
