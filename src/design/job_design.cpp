@@ -22,6 +22,7 @@ constexpr std::size_t most_corners = 1000;  // ours
 constexpr double farthest_corner = 1e9;     // [m]; that of a map
 constexpr double highest_thing = 100.0;     // obstacle, truck or depth [m]; ours
 constexpr double heaviest_load = 1e6;       // [kg]; ours
+constexpr double most_turned = 1e3;         // of the machine at the start [rad]; ours
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -96,7 +97,11 @@ class PlainSite {
     if (top_.states("files")) read_files(job);
     if (top_.states("start_pose")) {
       JsonObject pose = top_.object("start_pose");
-      job.start = BasePose{pose.number("x"), pose.number("y"), 0.0, pose.number("heading_rad")};
+      const auto place = [&](const char* key) {
+        return pose.number(key, -farthest_corner, farthest_corner);
+      };
+      job.start = BasePose{place("x"), place("y"), 0.0,
+                           pose.number("heading_rad", -most_turned, most_turned)};
     }
     each("keep_out", [&](JsonObject& object, const nlohmann::json& part) {
       KeepOut keep_out = {object.text_or("kind", ""), polygon_of(object, "polygon", part), {}};
@@ -254,6 +259,11 @@ JobTruck truck_of_text(const std::string& text) {
 void require_job(const JobDesign& job) {
   require_in("job: tolerance [m]", job.tolerance, 1e-4, 10.0);
   require_in("job: edge margin [m]", job.edge_margin, 0.0, 100.0);
+  if (job.start) {
+    for (const double place : {job.start->x, job.start->y})
+      require_in("job: start of the machine [m]", place, -farthest_corner, farthest_corner);
+    require_in("job: heading at the start [rad]", job.start->heading, -most_turned, most_turned);
+  }
   for (const KeepOut& keep_out : job.keep_out) {
     require_polygon("keep-out " + keep_out.kind, keep_out.polygon);
     if (keep_out.depth) {

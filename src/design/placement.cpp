@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/placement.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <excavplan/base/error.hpp>
@@ -19,6 +21,7 @@ namespace {
 
 constexpr double farthest_off = 30.0;  // between ground and design [m]; ours
 constexpr double well = 0.9;           // of a design on known ground; ours
+constexpr double shortest = 0.5;       // design that could be meant [m]; ours
 
 struct Factor {
   double value;
@@ -88,16 +91,19 @@ std::string range_text(double low, double high) {
   return readable(low, 4) + " .. " + readable(high, 4);
 }
 
-std::string advice_for(const std::vector<Sample>& samples, const HeightMap& ground) {
-  for (const bool swapped : {true, false}) {
+/// What comes of a single mistake is told first.
+std::string advice_for(const std::vector<Sample>& samples, double length, const HeightMap& ground) {
+  constexpr std::array<std::pair<bool, bool>, 3> mistakes = {
+      {{true, false}, {false, true}, {true, true}}};
+  for (const auto& [swapped, scaled] : mistakes) {
     for (const Factor& factor : factors) {
-      if (!swapped && factor.value == 1.0) continue;
+      if ((factor.value != 1.0) != scaled || factor.value * length < shortest) continue;
       const Fit fit = fit_of(samples, ground, swapped, factor.value);
       if (fit.known_share < well || std::abs(fit.height) > farthest_off) continue;
-      const std::string how =
-          swapped ? std::string("x and y (easting and northing) are swapped") +
-                        (factor.value == 1.0 ? "" : std::string(" and they are ") + factor.words)
-                  : std::string("they are ") + factor.words;
+      const std::string how = swapped
+                                  ? std::string("x and y (easting and northing) are swapped") +
+                                        (scaled ? std::string(" and they are ") : "") + factor.words
+                                  : std::string("they are ") + factor.words;
       return ": it would with " + readable(100.0 * fit.known_share, 2) +
              " % of its area if its coordinates are " +
              (swapped ? "put right, as " : "scaled, as ") + how;
@@ -115,12 +121,13 @@ void require_placement(const DesignSurface& design, const HeightMap& ground, dou
   const Fit fit = fit_of(samples, ground, false, 1.0);
   const std::string what = "design " + in_quotes(design.name);
   if (fit.known_share < least_share) {
+    const double length = std::max(own.x_max - own.x_min, own.y_max - own.y_min);
     throw Error(ErrorKind::bad_file,
                 what + ": only " + readable(100.0 * fit.known_share, 2) +
                     " % of it lies on known ground (x " + range_text(own.x_min, own.x_max) +
                     " m, y " + range_text(own.y_min, own.y_max) + " m; the scan x " +
                     range_text(map.x_min, map.x_max) + " m, y " + range_text(map.y_min, map.y_max) +
-                    " m)" + advice_for(samples, ground));
+                    " m)" + advice_for(samples, length, ground));
   }
   if (std::abs(fit.height) <= farthest_off) return;
   throw Error(ErrorKind::bad_file,

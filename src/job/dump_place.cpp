@@ -74,13 +74,17 @@ double pin_reach(const Machine& machine, double height) {
   return left > 0.0 ? machine.boom_pin.x() + std::sqrt(left) - spare_reach : 0.0;
 }
 
-/// Points of an outline.
+/// Points of an outline, of sides that reach far those near a place alone.
 template <typename Visit>
-void for_each_on(const SitePolygon& polygon, Visit visit) {
+void for_each_on(const SitePolygon& polygon, const Vector2d& near, double reach, Visit visit) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector2d way = polygon[(i + 1) % polygon.size()] - polygon[i];
     const double steps = std::max(1.0, std::ceil(way.norm() / edge_step));
-    for (double k = 0.0; k < steps; ++k) visit(Vector2d(polygon[i] + k / steps * way));
+    const double step = std::max(way.norm(), 1e-12) / steps;
+    const double beside = (near - polygon[i]).dot(way) / (step * step * steps);
+    const double last = std::min(steps - 1.0, std::floor(beside + reach / step) + 1.0);
+    for (double k = std::max(0.0, std::ceil(beside - reach / step) - 1.0); k <= last; ++k)
+      visit(Vector2d(polygon[i] + k / steps * way));
   }
 }
 
@@ -281,7 +285,7 @@ bool turns_clear(const JobSettings& settings, const BasePose& base, double swing
   const PlanFrame frame(Vector2d(base.x, base.y), base.heading);
   bool clear = true;
   for (const JobObstacle& obstacle : settings.design.obstacles) {
-    for_each_on(obstacle.polygon, [&](const Vector2d& place) {
+    for_each_on(obstacle.polygon, {base.x, base.y}, reach, [&](const Vector2d& place) {
       const Vector2d at = frame.of(place);
       const double away = at.norm();
       if (away >= reach) return;

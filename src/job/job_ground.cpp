@@ -234,8 +234,22 @@ void JobGround::save(long long number) const {
   std::filesystem::remove(file_of(number - 2), none);
 }
 
-void JobGround::load(long long number) {
-  if (site_.updates() > number) site_.undo();
+void JobGround::forget() noexcept {
+  try {
+    if (!site_.is_empty()) site_.undo();
+  } catch (const std::exception&) {  // what is told is why the job does not begin
+    return;
+  }
+}
+
+void JobGround::load(long long number, long long updates) {
+  if (site_.updates() > updates) site_.undo();
+  if (site_.updates() != updates) {
+    throw Error(ErrorKind::bad_file, folder_ + ": its site has taken in " +
+                                         std::to_string(site_.updates()) + " scans, its job " +
+                                         std::to_string(updates) +
+                                         ": files of it are missing, or of another job");
+  }
   scanned_ = load_ground(file_of(number));
   begin_at_scan();
 }

@@ -61,11 +61,15 @@ class JobGround {
   /// Takes in a scan of the ground.
   ScanNews take_in(const SiteEvent& scanned);
 
-  /// Writes the ground at the last scan. @param number  of the site's updates
+  /// Writes the ground at the last scan. @param number  of such files; the last two are kept
   void save(long long number) const;
   /// Goes on from what was written at that scan. A later one of the site, whose job was not written
   /// any more, is taken back.
-  void load(long long number);
+  /// @param updates  that the site had taken in
+  /// @throws Error (bad_file) if the site has taken in others
+  void load(long long number, long long updates);
+  /// Takes the first scan back, as no job begins with it.
+  void forget() noexcept;
   /// Of the last scan taken in.
   const std::vector<Warning>& warnings() const { return warnings_; }
 

@@ -241,6 +241,7 @@ Json record_json(const JobRecord& record) {
   for_each_number(record, [&](const char* key, double value) { json[key] = value; });
   json["learning"] = learning_json(record.learning);
   json["rests_at_rad"] = joints_json(record.rests_at);
+  if (record.grounds != record.site_updates) json["grounds"] = record.grounds;
   if (record.off_place > 0.0) json["off_place_m"] = record.off_place;
   if (record.is_sent_again) json["sent_again"] = true;
   if (record.moves_to_dump > 0) json["moves_to_dump"] = record.moves_to_dump;
@@ -274,6 +275,9 @@ JobRecord read_record(const std::string& path) {
   record.base = read_base(object);
   record.last_step = static_cast<long long>(object.number("last_step", 0, 1e12));
   record.site_updates = static_cast<long long>(object.number("site_updates", 0, 1e12));
+  record.grounds = record.site_updates;
+  if (object.has("grounds"))
+    record.grounds = static_cast<long long>(object.number("grounds", 0, 1e12));
   record.wants_scan = object.flag("wants_scan");
   record.has_arrived = object.flag("has_arrived");
   for_each_count(record, [&](const char* key, int& value) {

@@ -34,6 +34,7 @@ struct JobRecord {
   StrengthSigns signs;                ///< likewise
   std::vector<JobStep> unseen;        ///< digs since the last scan
   long long site_updates = 0;         ///< scans that the site had taken in
+  long long grounds = 0;              ///< that were written, one after each scan, taken or not
   double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall
   bool has_arrived = false;           ///< at its present station
   bool wants_scan = false;            ///< after a stall

@@ -10,10 +10,11 @@ namespace excavplan {
 namespace {
 
 // The most that is believed of a report, and that a record holds of many; ours.
-constexpr double most_mass = 1e6;    // [kg]
-constexpr double most_work = 1e12;   // [J]
-constexpr double farthest = 1e9;     // from the origin of the site's frame [m]
-constexpr double most_turned = 1e3;  // [rad]
+constexpr double most_mass = 1e6;     // [kg]
+constexpr double most_work = 1e12;    // [J]
+constexpr double farthest = 1e9;      // from the origin of the site's frame [m]
+constexpr double most_turned = 1e3;   // [rad]
+constexpr double latest_time = 1e11;  // as in a ground file [s]
 
 }  // namespace
 
@@ -42,7 +43,7 @@ bool JobStep::ends_finished() const { return what == JobAction::stop && reason =
 void require_report(const JobStep& step, const StepReport& report) {
   const std::string of = " of step " + std::to_string(step.id) + ", " + name(step.what);
   const double lifted = report.payload_mass.value_or(0.0);
-  require(std::isfinite(report.time), "time" + of + " [s]", report.time, "finite");
+  require_in("time" + of + " [s]", report.time, -latest_time, latest_time);
   require_in("payload mass" + of + " [kg]", lifted, 0.0, most_mass);
   require_in("work of the joints" + of + " [J]", report.joint_work.value_or(0.0), 0.0, most_work);
   if (const auto& base = report.base) {

@@ -168,6 +168,7 @@ struct SiteJob::State {
                     settings.design.tolerance);
   }
 
+  void begin(const Scan& scan, double time);
   JobStep decide();
   std::optional<JobStep> dig_step(bool finishing);
   std::optional<JobStep> best_step(bool finishing);
@@ -231,6 +232,7 @@ struct SiteJob::State {
   }
   void go_back() noexcept;
   void require_whole() const;
+  void require_record() const;
   std::string first_file() const { return folder + '/' + first_ground_file; }
 
   std::string folder;
@@ -677,7 +679,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
   }
   record.wants_scan = false;
   record.site_updates = ground.site().updates();
-  ground.save(record.site_updates);
+  ground.save(++record.grounds);
   ++record.progress.scans;
 }
 
@@ -785,7 +787,7 @@ void SiteJob::State::save_changed(const JobRecord& before, const JobStep& step,
 /// The ground of the record.
 void SiteJob::State::restore() {
   log->cut(record);
-  ground.load(record.site_updates);
+  ground.load(record.grounds, record.site_updates);
   for (const JobStep& dig : record.unseen) ground.expect(dig, record.learning.height_bias.mean);
 }
 
@@ -810,6 +812,30 @@ void SiteJob::State::require_whole() const {
                   "the job again once its folder can be written to");
 }
 
+/// That it can be of these settings.
+void SiteJob::State::require_record() const {
+  const auto& step = record.present;
+  const bool is_dig_of_it = !step || !step->digs() || record.planned;
+  const bool is_loaded = !step || !step->truck || settings.design.truck;
+  require(record.station < stations.size() && is_dig_of_it && is_loaded,
+          folder + ": its job is of another design, truck or machine than it is to go on with");
+}
+
+void SiteJob::State::begin(const Scan& scan, double time) {
+  (void)ground.take_in(event_of(scan, time, *settings.design.start));
+  first = ground.expected();
+  save_ground(first_file(), ground.site().ground());
+  look_at_design();
+  record.base = base_at(frame, {}, first, settings.site.machine);
+  record.site_updates = ground.site().updates();
+  record.grounds = record.site_updates;
+  ground.save(record.grounds);
+  record.progress.design_volume = progress().left_volume;
+  log_from(ground.site().ground());
+  log->begin();
+  save();
+}
+
 SiteJob::SiteJob(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SiteJob::~SiteJob() = default;
 SiteJob::SiteJob(SiteJob&&) noexcept = default;
@@ -822,18 +848,13 @@ SiteJob SiteJob::begin(const std::string& folder, JobSettings settings, const Sc
                                      ": holds a job already: go on with it, or begin it in "
                                      "another folder");
   auto state = std::make_unique<State>(folder, std::move(settings));
-  (void)state->ground.take_in(event_of(first, time, *state->settings.design.start));
-  state->first = state->ground.expected();
-  save_ground(state->first_file(), state->ground.site().ground());
-  state->look_at_design();
-  JobRecord& record = state->record;
-  record.base = base_at(state->frame, {}, state->first, state->settings.site.machine);
-  record.site_updates = state->ground.site().updates();
-  state->ground.save(record.site_updates);
-  record.progress.design_volume = state->progress().left_volume;
-  state->log_from(state->ground.site().ground());
-  state->log->begin();
-  state->save();
+  const bool is_new = state->ground.site().is_empty();
+  try {
+    state->begin(first, time);
+  } catch (...) {
+    if (is_new) state->ground.forget();
+    throw;
+  }
   return SiteJob(std::move(state));
 }
 
@@ -844,6 +865,7 @@ SiteJob SiteJob::resume(const std::string& folder, JobSettings settings) {
   const GroundState first = load_ground(state->first_file());
   state->first = first.terrain;
   state->look_at_design();
+  state->require_record();
   state->log_from(first);
   state->hang_design();
   state->log->resume(state->record);

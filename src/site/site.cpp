@@ -136,7 +136,7 @@ struct Site::State {
 };
 
 void Site::State::require_new(const SiteEvent& event, const std::string& digest) const {
-  require(std::isfinite(event.time), "time of the scan [s]", event.time, "finite");
+  require_in("time of the scan [s]", event.time, -latest_time, latest_time);
   const std::vector<SiteRecord>& latest = site.manifest.latest;
   const auto same = std::find_if(latest.begin(), latest.end(),
                                  [&](const SiteRecord& each) { return each.scan == digest; });

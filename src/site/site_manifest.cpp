@@ -8,7 +8,6 @@ namespace excavplan {
 namespace {
 
 constexpr const char* format = "excavplan-site";
-constexpr double latest_time = 1e11;  // as in a ground file [s]
 
 nlohmann::ordered_json json_of(const StoredFile& file) {
   return {{"file", file.name}, {"checksum", file.digest}};

@@ -35,6 +35,8 @@ struct SiteManifest {
 
 /// Updates that a site remembers by their scans; ours.
 inline constexpr std::size_t most_records = 64;
+/// Of a scan, to either side of 1970; as in a ground file [s].
+inline constexpr double latest_time = 1e11;
 
 std::string manifest_text(const SiteManifest& manifest);
 

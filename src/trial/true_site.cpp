@@ -28,7 +28,9 @@ namespace {
 using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
-constexpr double spare_reach = 0.3;  // for what a move landed off; ours [m]
+// Numbers of our own choice [m].
+constexpr double spare_reach = 0.3;    // for what a move landed off
+constexpr double least_noise = 1e-12;  // of a sensor: no scan has the very points of another
 
 // Streams of a step.
 constexpr std::uint64_t tracking_stream = 1;
@@ -318,8 +320,9 @@ TrueStep TrueSite::State::move(const JobStep& job) {
 Scan TrueSite::State::scan() {
   const std::uint64_t seed = Random(options.seed, scan_stream, scans++).bits();
   const HeightMap surface = ground.surface();
-  Scan scan =
-      scan_site(with_obstacles(surface, site.known.job.obstacles), site.known.sensor, real, seed);
+  SiteSensor sensor = site.known.sensor;
+  sensor.noise = std::max(sensor.noise, least_noise);
+  Scan scan = scan_site(with_obstacles(surface, site.known.job.obstacles), sensor, real, seed);
   scan.name = "scan " + std::to_string(scans);
   const HeightMap& cells = site.first_scan;
   for (const auto& cloud : scan.clouds) {

@@ -156,6 +156,11 @@ TEST(Placement, WhatWouldMakeADesignFitIsTold) {
             string::npos);
   EXPECT_NE(placement_error(plane_design(0, 0, 1), ground).find("in the same frame?"),
             string::npos);
+  EXPECT_NE(placement_error(wrong(1.0, false), ground_at(0)).find("in the same frame?"),
+            string::npos)
+      << "a trench of centimetres is none";
+  EXPECT_EQ(placement_error(plane_design(0, 0, 30), ground_at(0)).find("swapped"), string::npos)
+      << "a single mistake is likelier than two";
   EXPECT_NE(placement_error(plane_design(-200, 0, 10), ground_at(0)).find("200 m below the ground"),
             string::npos);
 }

@@ -62,11 +62,27 @@ TEST(PlainSite, ErrorsNameKeyAndRule) {
       {R"(,"keep_out":[{}])", "must be a list of corners"},
       {R"(,"dump_areas":[{"kind":"pond","polygon":[[0,0],[1,0],[1,1]]}])",
        "must be windrow or heap"},
+      {R"(,"start_pose":{"x":1e10,"y":2,"heading_rad":3})", "start_pose.x"},
+      {R"(,"start_pose":{"x":1,"y":2,"heading_rad":1e17})", "start_pose.heading_rad"},
       {R"(,"files":{"first_scan":"../scan.asc"})", "must be a file in the folder"}};
   for (const auto& [more, expected] : cases) {
     const DesignFile file("json", site(more));
     const string error = error_about([&] { read_plain_site(file.path()); }, file.path());
     EXPECT_NE(error.find(expected), string::npos) << error;
+  }
+}
+
+TEST(PlainSite, AStartWhereNoMachineStandsIsRefused) {
+  JobDesign job;
+  job.dump_areas = {{DumpArea::Kind::heap, polygon_of_text("0,0,1,0,1,1")}};
+  job.start = BasePose{1.0, 2.0, 0.0, 3.0};
+  require_job(job);
+  for (const double bad : {std::nan(""), 1e10, -1e300}) {
+    for (double BasePose::*part : {&BasePose::x, &BasePose::y, &BasePose::heading}) {
+      JobDesign other = job;
+      (*other.start).*part = bad;
+      EXPECT_NE(error_of([&] { require_job(other); }).find("start"), string::npos) << bad;
+    }
   }
 }
 

@@ -575,6 +575,17 @@ TEST(JobStations, TheTailSweepsBehindOnTheSideAwayFromTheSwing) {
   EXPECT_TRUE(clear_of(-3.0, 0.0, 0.0));
 }
 
+TEST(JobStations, OfAWallThatReachesFarWhatIsNearCounts) {
+  HandMadeJob job;
+  const auto clear_of = [&](double left) {
+    job.settings.design.obstacles = {{"wall", box(-1e9, left, 1e9, left + 0.1), 6.0}};
+    return turns_clear(job.settings, {0.0, 0.0, 0.0, 0.0}, 1.2);
+  };
+  EXPECT_TRUE(clear_of(5.0));
+  EXPECT_FALSE(clear_of(-2.0));
+  EXPECT_TRUE(clear_of(-4.0));
+}
+
 TEST(ScanDatum, TheMeanOfAllScansTellsHowFarTheFirstWasOff) {
   // The first scan lies 9 mm too high and rises by 1 mm/m along x too much; the others are exact.
   ScanDatum datum;

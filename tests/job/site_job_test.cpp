@@ -13,6 +13,7 @@
 #include <excavplan/job/job_motion.hpp>
 
 #include "ground/grid_cells.hpp"
+#include "job/job_record.hpp"
 #include "job/trench_job.hpp"
 #include "support/errors.hpp"
 
@@ -142,6 +143,25 @@ TEST(SiteJob, AScanThatIsRefusedChangesNothing) {
   EXPECT_GT(job.next().id, step.id);
 }
 
+TEST(SiteJob, AScanThatWasNotTakenIsTakenBack) {
+  BegunJob begun(3);
+  Scan scan = begun.of.truth.scan();
+  auto cloud = std::make_shared<Cloud>(*scan.clouds.front());
+  for (Eigen::Vector3d& point : cloud->points)
+    point.z() += std::sin(1.5 * point.x()) * std::cos(1.5 * point.y());
+  scan.clouds = {cloud};
+  const double left = begun.job.progress().left_volume;
+  begun.job.look(scan, begun.of.truth.time() + 1.0);
+  const auto& warnings = begun.job.scan_warnings();
+  ASSERT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const Warning& each) {
+    return each.code == WarningCode::scan_not_taken;
+  }));
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  begun.job.undo();
+  EXPECT_EQ(begun.job.progress().left_volume, left);
+}
+
 TEST(SiteJob, AMoveThatWasAskedForOutlastsAScan) {
   const ShortTrench site;
   TrenchJob of{site};
@@ -159,6 +179,16 @@ TEST(SiteJob, AFolderHoldsOneJob) {
   EXPECT_NE(error_of([&] { of.begin(); }).find("holds a job already"), std::string::npos);
   of.settings.design.start.reset();
   EXPECT_NE(error_of([&] { of.resume(); }).find("start is not told"), std::string::npos);
+}
+
+TEST(SiteJob, AFolderInWhichNoneCouldBeginTakesAnother) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  const DesignSurface design = of.settings.surface;
+  for (Eigen::Vector3d& point : std::get<Tin>(of.settings.surface.shape).points) point.z() += 5.0;
+  EXPECT_NE(error_of([&] { of.begin(); }).find("covers no cell of the ground"), std::string::npos);
+  of.settings.surface = design;
+  EXPECT_EQ(of.begin().next().what, JobAction::move);
 }
 
 TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
@@ -200,7 +230,39 @@ TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
   EXPECT_EQ(refusal([&](StepReport& each) { each.payload_mass = nan; }),
             "payload mass of step 2, dig [kg] is nan, must be in 0 .. 1000000");
   EXPECT_EQ(refusal([&](StepReport& each) { each.time = nan; }),
-            "time of step 2, dig [s] is nan, must be finite");
+            "time of step 2, dig [s] is nan, must be in -100000000000 .. 100000000000");
+  EXPECT_NE(refusal([&](StepReport& each) { each.time = 1e12; }), "no error");
+}
+
+TEST(SiteJob, ARecordThatCannotBeOfTheDesignIsRefused) {
+  BegunJob begun(1);
+  ASSERT_EQ(begun.job.next().what, JobAction::dig);
+  const std::string folder = begun.of.path();
+  { const SiteJob ended = std::move(begun.job); }
+  const JobRecord record = load_record(folder);
+  const auto refusal = [&](const auto& change) {
+    JobRecord other = record;
+    change(other);
+    save_record(folder, other);
+    return error_of([&] { begun.of.resume(); });
+  };
+  const std::string text = ": its job is of another design, truck or machine";
+  EXPECT_NE(refusal([](JobRecord& each) { each.station = 40; }).find(text), std::string::npos);
+  EXPECT_NE(refusal([](JobRecord& each) { each.planned.reset(); }).find(text), std::string::npos);
+  EXPECT_NE(refusal([](JobRecord& each) { each.present->truck = 1; }).find(text),
+            std::string::npos);
+  EXPECT_EQ(refusal([](JobRecord&) {}), "no error");
+}
+
+TEST(SiteJob, AJobWhoseSiteIsGoneIsRefused) {
+  BegunJob begun(0);
+  const std::string folder = begun.of.path();
+  { const SiteJob ended = std::move(begun.job); }
+  std::filesystem::remove(folder + "/site.json");
+  EXPECT_EQ(error_of([&] { begun.of.resume(); }, ErrorKind::bad_file),
+            folder +
+                ": its site has taken in 0 scans, its job 1: files of it are missing, or of "
+                "another job");
 }
 
 TEST(SiteJob, AJobWithTheMostThatIsBelievedCanBeReadAgain) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "site/scan_digest.hpp"
 #include "support/errors.hpp"
 #include "support/plain_site_folder.hpp"
 #include "trial/tracked_path.hpp"
@@ -196,6 +197,17 @@ TEST(TrueSite, SeenIsWhatAScanSawSinceItChanged) {
   ASSERT_TRUE(done.report.scan.has_value());
   EXPECT_EQ(done.time, 3.0);
   EXPECT_GT(truth.seen_share(around), 0.9);
+}
+
+TEST(TrueSite, ASiteTakesTwoExactScansOfTheSameGround) {
+  TrueSite truth(SiteAtOrigin().read(), zx120());
+  const auto scanned = [&] { return truth.execute(step_of(JobAction::scan)).report.scan; };
+  const auto first = scanned(), second = scanned();
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(scan_digest(*first), scan_digest(*second));
+  const auto &one = first->clouds[0]->points, &other = second->clouds[0]->points;
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_LT((one[i] - other[i]).norm(), 1e-9);
 }
 
 TEST(TrueSite, ADumpOutOfReachIsRefused) {

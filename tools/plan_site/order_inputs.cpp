@@ -62,7 +62,7 @@ Surface surface_of(const Scan& scan, const Machine& machine) {
   }
   RasterOptions options;
   options.cell_size = std::max(usual_cell(machine), survey_cell({seen}));
-  return survey_surface(scan, *seen.extent, options);
+  return of_option("--scan", [&] { return survey_surface(scan, *seen.extent, options); });
 }
 
 /// All of a trench but its place.

@@ -31,11 +31,13 @@ class SiteJob : public JobPlanner {
   /// @param first  scan of the ground before the job, in the site's frame
   /// @param time  of it, since 1970-01-01 UTC [s]
   /// @throws Error (bad_input) as require_job_settings(), or if the folder holds a job; as
-  /// Site::update()
+  /// Site::update(). Nothing is begun then
   static SiteJob begin(const std::string& folder, JobSettings settings, const Scan& first,
                        double time);
   /// Goes on with the job of a folder.
-  /// @throws Error (bad_file) if it holds none, or a file of it is damaged
+  /// @param settings  that it was begun with
+  /// @throws Error (bad_file) if it holds none, or a file of it is damaged or not of this job;
+  /// (bad_input) if the job cannot be of these settings
   static SiteJob resume(const std::string& folder, JobSettings settings);
   ~SiteJob() override;
   SiteJob(SiteJob&&) noexcept;             ///< the other may only be destroyed then
