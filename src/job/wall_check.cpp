@@ -9,6 +9,7 @@
 
 #include "base/plan_geometry.hpp"
 #include "base/text.hpp"
+#include "job/job_learning.hpp"
 #include "job/step_search.hpp"
 
 namespace excavplan {
@@ -50,6 +51,27 @@ double distance_to(const std::vector<Vector2d>& line, const Vector2d& place) {
   return least;
 }
 
+SoilState soil_at(const SoilState& bank, double height) {
+  SoilState soil = bank;
+  if (height > proof_from && soil.cohesion <= apparent_cohesion) soil.cohesion = 0.0;
+  return soil;
+}
+
+/// With the factor that it needs.
+DesignWall wall_of(double height, double batter) {
+  DesignWall wall;
+  wall.height = height;
+  wall.batter = batter;
+  wall.least = height > proof_from && batter < proof_below_batter ? least_proven : least_usual;
+  return wall;
+}
+
+std::optional<double> batter_for(const SoilState& bank, const DesignWall& wall) {
+  SoilFace face;
+  face.height = wall.height;
+  return standing_batter(soil_at(bank, wall.height), face, wall.least);
+}
+
 class WallCheck {
  public:
   explicit WallCheck(const WallTask& task)
@@ -73,7 +95,7 @@ class WallCheck {
       if (!wall || wall->factor >= wall->least) continue;
       if (!weakest || wall->factor / wall->least < weakest->factor / weakest->least) weakest = wall;
     }
-    if (weakest) weakest->standing = batter_for(*weakest);
+    if (weakest) weakest->standing = batter_for(bank_, *weakest);
     return weakest;
   }
 
@@ -130,29 +152,19 @@ class WallCheck {
     if (deepest < lowest_wall) return std::nullopt;
     const auto toe = std::find_if(depths.begin(), depths.end(),
                                   [&](double depth) { return depth >= nearly * deepest; });
-    DesignWall wall;
+    DesignWall wall = wall_of(deepest, static_cast<double>(toe - depths.begin()) * cell / deepest);
     wall.edge = place;
-    wall.height = deepest;
-    wall.batter = static_cast<double>(toe - depths.begin()) * cell / deepest;
-    const bool is_proven = deepest > proof_from && wall.batter < proof_below_batter;
-    wall.least = is_proven ? least_proven : least_usual;
-    wall.factor = factor_of_safety(soil_at(wall), face_of(wall, edge.outward));
+    wall.factor = factor_of_safety(soil_at(bank_, deepest), face_of(wall, edge.outward));
     return wall;
-  }
-
-  SoilState soil_at(const DesignWall& wall) const {
-    SoilState soil = bank_;
-    if (wall.height > proof_from && soil.cohesion <= apparent_cohesion) soil.cohesion = 0.0;
-    return soil;
   }
 
   SoilFace face_of(const DesignWall& wall, const Vector2d& outward) const {
     SoilFace face;
     face.height = wall.height;
     face.run = wall.batter * wall.height;
-    const double top = at(task_.map.before, wall.edge);
+    const double top = at(task_.map.before, *wall.edge);
     for (double x = 0.5 * face.load_step; x < loaded_over * wall.height; x += face.load_step)
-      face.loads.push_back(load_on(wall.edge + x * outward, top));
+      face.loads.push_back(load_on(*wall.edge + x * outward, top));
     return face;
   }
 
@@ -182,12 +194,6 @@ class WallCheck {
     return mass * gravity / (2.0 * length * shoe * width);
   }
 
-  std::optional<double> batter_for(const DesignWall& wall) const {
-    SoilFace face;
-    face.height = wall.height;
-    return standing_batter(soil_at(wall), face, wall.least);
-  }
-
   const WallTask& task_;
   SoilState bank_;
   SoilState loose_;
@@ -200,18 +206,36 @@ std::optional<DesignWall> weakest_wall(const WallTask& task, const std::vector<V
   return WallCheck(task).weakest(about, within);
 }
 
+SoilState surely_strong(const SoilKind& soil, double density_percent) {
+  return bank_state(with_strength(soil, JobLearning{}.strength_factor(-1)), density_percent);
+}
+
+std::optional<DesignWall> weak_wall(const SoilState& bank, double height, double batter) {
+  if (height < lowest_wall) return std::nullopt;
+  DesignWall wall = wall_of(height, batter);
+  SoilFace face;
+  face.height = height;
+  face.run = batter * height;
+  wall.factor = factor_of_safety(soil_at(bank, height), face);
+  if (wall.factor >= wall.least) return std::nullopt;
+  wall.standing = batter_for(bank, wall);
+  return wall;
+}
+
 Warning warning_of(const DesignWall& wall) {
   const std::string asked_for = !wall.standing ? "shore it"
                                 : *wall.standing > wall.batter
                                     ? "give it a batter of " + readable(*wall.standing, 2) +
                                           " (horizontal per vertical), or shore it"
                                     : "keep spoil and tracks off its edge, or shore it";
-  return {WarningCode::unstable_wall,
-          "the wall at x = " + readable(wall.edge.x(), 2) +
-              " m, y = " + readable(wall.edge.y(), 2) + " m, " + readable(wall.height, 2) +
-              " m high with a batter of " + readable(wall.batter, 2) +
-              ", may fail: its factor of safety is " + readable(wall.factor, 2) + ", it needs " +
-              readable(wall.least, 2) + "; " + asked_for};
+  const std::string where = wall.edge ? " at x = " + readable(wall.edge->x(), 2) +
+                                            " m, y = " + readable(wall.edge->y(), 2) + " m"
+                                      : std::string();
+  return {WarningCode::unstable_wall, "the wall" + where + ", " + readable(wall.height, 2) +
+                                          " m high with a batter of " + readable(wall.batter, 2) +
+                                          ", may fail: its factor of safety is " +
+                                          readable(wall.factor, 2) + ", it needs " +
+                                          readable(wall.least, 2) + "; " + asked_for};
 }
 
 }  // namespace excavplan

@@ -10,6 +10,7 @@
 #include <excavplan/base/warning.hpp>
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/job/job_settings.hpp>
+#include <excavplan/soil/soil.hpp>
 
 #include "job/job_map.hpp"
 
@@ -29,12 +30,12 @@ struct WallTask {
 
 /// A wall of the design, in a section across its edge.
 struct DesignWall {
-  Eigen::Vector2d edge = Eigen::Vector2d::Zero();  ///< [m]
-  double height = 0.0;                             ///< [m]
-  double batter = 0.0;                             ///< run over height
-  double factor = 0.0;                             ///< of safety
-  double least = 0.0;                              ///< that it needs
-  std::optional<double> standing;                  ///< batter that has it
+  std::optional<Eigen::Vector2d> edge;  ///< where it is, if that is known [m]
+  double height = 0.0;                  ///< [m]
+  double batter = 0.0;                  ///< run over height
+  double factor = 0.0;                  ///< of safety
+  double least = 0.0;                   ///< that it needs
+  std::optional<double> standing;       ///< batter that has it
 };
 
 /// The one that lacks most of the factor that it needs.
@@ -44,6 +45,12 @@ struct DesignWall {
 std::optional<DesignWall> weakest_wall(const WallTask& task,
                                        const std::vector<Eigen::Vector2d>& about = {},
                                        double within = 0.0);
+
+/// Undisturbed soil as strong as it surely is before any dig told of it.
+SoilState surely_strong(const SoilKind& soil, double density_percent);
+
+/// A wall of that height and batter in level ground, with nothing beside it; nothing if it stands.
+std::optional<DesignWall> weak_wall(const SoilState& bank, double height, double batter);
 
 /// An unstable_wall.
 Warning warning_of(const DesignWall& wall);

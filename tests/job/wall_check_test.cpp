@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "job/job_learning.hpp"
 #include "job/job_map.hpp"
 #include "job/trench_job.hpp"
 
@@ -100,7 +101,7 @@ TEST(WallCheck, SpoilAndTracksAtTheEdgeLoadIt) {
   EXPECT_FALSE(walls.weakest(far));
   const auto by_tracks = walls.weakest(beside);
   ASSERT_TRUE(by_tracks);
-  EXPECT_NEAR(by_tracks->edge.y(), 0.5, 0.1);
+  EXPECT_NEAR(by_tracks->edge->y(), 0.5, 0.1);
   EXPECT_NE(warning_of(*by_tracks).message.find("keep spoil and tracks off"), std::string::npos);
   for (Eigen::Index col = 0; col < walls.ground.loose.cols(); ++col) {
     for (Eigen::Index row = 0; row < walls.ground.loose.rows(); ++row) {
@@ -110,7 +111,21 @@ TEST(WallCheck, SpoilAndTracksAtTheEdgeLoadIt) {
   }
   const auto by_spoil = walls.weakest();
   ASSERT_TRUE(by_spoil);
-  EXPECT_NEAR(by_spoil->edge.y(), -0.5, 0.1);
+  EXPECT_NEAR(by_spoil->edge->y(), -0.5, 0.1);
+}
+
+TEST(WallCheck, InLevelGroundIsThatOfTheDesign) {
+  const Cut cut(0.5, "sand");
+  Walls walls(cut);
+  walls.strength = JobLearning{}.strength_factor(-1);
+  const auto there = walls.weakest();
+  const SoilKind sand = load_soil(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/sand.json");
+  const auto alone = weak_wall(surely_strong(sand, 40.0), 0.5, 0.0);
+  ASSERT_TRUE(there && alone);
+  EXPECT_NEAR(alone->factor, there->factor, 0.02);
+  EXPECT_EQ(alone->standing, there->standing);
+  EXPECT_EQ(warning_of(*alone).message.find(" at x ="), std::string::npos);
+  EXPECT_FALSE(weak_wall(surely_strong(sand, 40.0), 0.2, 0.0)) << "no wall to speak of";
 }
 
 TEST(WallCheck, OnlyWallsNearbyAreLookedAt) {
@@ -118,8 +133,8 @@ TEST(WallCheck, OnlyWallsNearbyAreLookedAt) {
   const Walls walls(cut);
   const auto near = walls.weakest_about({{2.2, -0.5}, {3.0, -0.5}});
   ASSERT_TRUE(near);
-  EXPECT_LT(near->edge.x(), 3.6);
-  EXPECT_LT(near->edge.y(), 0.1);
+  EXPECT_LT(near->edge->x(), 3.6);
+  EXPECT_LT(near->edge->y(), 0.1);
   EXPECT_FALSE(walls.weakest_about({{2.0, -4.0}, {6.0, -4.0}}));
 }
 

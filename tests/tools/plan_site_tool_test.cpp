@@ -156,6 +156,9 @@ TEST_F(PlanSite, AWallThatMayFailIsTold) {
   const json begun = answer("plan-site", upright);
   EXPECT_EQ(begun["trustworthy"], false);
   EXPECT_TRUE(warns(begun, "unstable_wall")) << begun["warnings"];
+  const Words words = {"estimate", "--trench", "15x1x1.5m", "--soil", "sand"};
+  EXPECT_TRUE(warns(answer("plan-site", words), "unstable_wall"));
+  EXPECT_FALSE(warns(answer("plan-site", words + Words{"--batter", "1.8"}), "unstable_wall"));
 }
 
 TEST_F(PlanSite, AnEstimateOfWordsOfASiteAndOfAJob) {

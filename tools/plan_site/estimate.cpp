@@ -10,6 +10,7 @@
 #include <excavplan/job/site_job.hpp>
 
 #include "base/text.hpp"
+#include "job/wall_check.hpp"
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
@@ -37,6 +38,14 @@ PlannedCut cut_in(const JobInputs& inputs) {
   cut.shape =
       shape_of(settings.surface, cut_and_fill(settings.surface, job.ground().surface(), options));
   return cut;
+}
+
+/// Of a trench in words, whose ground is not known but as told.
+void add_walls(const PlannedCut& cut, const GroundDensity& density, Outcome& outcome) {
+  if (!cut.words) return;
+  const SoilState bank = surely_strong(cut.site.soil, density.percent);
+  if (const auto wall = weak_wall(bank, *cut.words->depth, cut.words->batter))
+    outcome.warnings.push_back(warning_of(*wall));
 }
 
 GroundDensity density_of(const JobInputs& inputs, const PlannedCut& cut) {
@@ -76,6 +85,7 @@ Outcome work_estimate(const JobInputs& inputs, Console& console) {
   outcome.json["fuel_model"] = basis.fuel.name;
   outcome.lines = estimate_lines(estimate, job, cost);
   outcome.trustworthy = estimate.trustworthy();
+  add_walls(cut, job.density, outcome);
   if (inputs.report) {
     outcome.page =
         page_of(estimate_report(estimate, cost,

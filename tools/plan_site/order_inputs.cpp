@@ -275,8 +275,8 @@ PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan) {
     cut.truck = of_option("--truck", [&] { return truck_of_text(*inputs.truck); });
   }
   if (inputs.trench && !scan.scan) {
-    const DesignWords words = size_of(inputs);
-    cut.shape = of_option("--trench", [&] { return shape_on_level_ground(words); });
+    cut.words = size_of(inputs);
+    cut.shape = of_option("--trench", [&] { return shape_on_level_ground(*cut.words); });
     return cut;
   }
   const Surface ground = surface_of(scan_of(scan).scan, cut.site.machine);

@@ -66,6 +66,7 @@ struct PlannedCut {
   JobShape shape;
   std::optional<GroundDensity> density = {};  ///< as the site says
   std::optional<JobTruck> truck = {};
+  std::optional<DesignWords> words = {};  ///< of a trench in level ground
 };
 /// @throws Error as order_of()
 PlannedCut cut_of(const OrderInputs& inputs, const SiteScanInputs& scan);
