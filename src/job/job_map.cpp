@@ -64,11 +64,12 @@ double share_of_faces(const JobMap& map, double heading, bool is_any) {
   int count = 0;
   for_each_cell(target.z, [&](Cell at) {
     if (!map.counts(at.row, at.col)) return;
+    ++count;
     const auto& z = target.z;
+    if (on_border(z, at)) return;
     const Vector2d slope = Vector2d(z(at.row, at.col + 1) - z(at.row, at.col - 1),
                                     z(at.row + 1, at.col) - z(at.row - 1, at.col)) /
                            (2.0 * target.cell_size);
-    ++count;
     if ((is_any ? slope.norm() : std::abs(slope.dot(aside))) > flattest) ++faces;
   });
   return count > 0 ? static_cast<double>(faces) / count : 0.0;

@@ -492,6 +492,14 @@ TEST(StepSearch, NoDragGoesDownAWall) {
   EXPECT_TRUE(best_dig(task).has_value());
 }
 
+/// Fails under the sanitizers if it reads beside the map.
+TEST(JobFrame, OfADesignOverTheWholeScanEndsWithIt) {
+  const JobFrame frame = HandMadeJob(40.0, 40.0).frame();
+  EXPECT_NEAR(frame.of({18.0, 0.0}).x(), frame.far, 1e-9);
+  EXPECT_FALSE(frame.is_battered);
+  EXPECT_EQ(frame.faces_across, 0.0);
+}
+
 TEST(JobFrame, ReversedIsTheSameDesignFromItsOtherEnd) {
   HandMadeJob job;
   const JobFrame frame = job.frame(), back = reversed(frame);
