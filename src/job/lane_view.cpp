@@ -112,6 +112,16 @@ GroundProfile LaneView::floor(double allowance) const {
 GroundProfile LaneView::top() const { return between_columns(surface_, top_); }
 GroundProfile LaneView::mean() const { return between_columns(surface_, ground_at_); }
 
+bool LaneView::is_known(double from, double to) const {
+  const auto col_of = [&](double place) {
+    return static_cast<Index>(std::floor((place - surface_.origin.x()) / surface_.cell_size));
+  };
+  const Index first = col_of(from) - 1, end = col_of(to) + 2;
+  const Index low = first_row_ - 1, high = end_row_ + 1;
+  if (first < 0 || end > columns() || low < 0 || high > surface_.z.rows()) return false;
+  return !surface_.z.block(low, first, high - low, end - first).isNaN().any();
+}
+
 ArrayXd LaneView::excess(double allowance) const {
   ArrayXd excess = ArrayXd::Zero(columns());
   for (Index col = 0; col < columns(); ++col) {

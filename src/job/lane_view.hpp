@@ -61,6 +61,9 @@ class LaneView {
   Eigen::Index columns() const { return surface_.z.cols(); }
   double x(Eigen::Index col) const { return surface_.x(col); }
   double ground_at(Eigen::Index col) const { return ground_at_(col); }  ///< [m]; NaN: not known
+  /// Whether all ground is known under the bucket and a cell around it, from one place of the lane
+  /// to another: what simulates a dig asks for it.
+  bool is_known(double from, double to) const;
   /// Mean thickness of what is above the floor under the bucket, of each column [m].
   Eigen::ArrayXd excess(double allowance) const;
 

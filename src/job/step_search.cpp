@@ -527,6 +527,10 @@ class StepSearch {
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
     auto* made = std::get_if<DigPath>(&path);
     if (made == nullptr || (task_.carried > 0.0 && !can_hold(*made))) return;
+    const auto [nearest, farthest] = std::minmax_element(
+        made->poses.begin(), made->poses.end(),
+        [](const DigPose& a, const DigPose& b) { return a.bucket.x < b.bucket.x; });
+    if (!at.view.is_known(nearest->bucket.x, farthest->bucket.x)) return;
     candidates_.push_back({lane, std::move(*made)});
   }
 

@@ -492,6 +492,21 @@ TEST(StepSearch, NoDragGoesDownAWall) {
   EXPECT_TRUE(best_dig(task).has_value());
 }
 
+TEST(StepSearch, NoDigGoesThroughGroundThatIsNotKnown) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  const auto hole = cell_at(job.ground.bank, 8.8, 0.02);
+  job.ground.bank.z(hole->row, hole->col) = std::nan("");
+  StepTask task{
+      job.settings, map, job.ground, {4.3, 0.0, 0.0, 0.0}, {{5.0, 3.0, 2.4}, 0.6, 2.4, false}, {}};
+  task.lines = {{0.0, 0.1, 2.95, 5.75}};
+  const auto dig = best_dig(task);
+  if (!dig) return;
+  const auto& poses = dig->path.poses;
+  const bool is_before = poses.front().bucket.x<4.5, is_beyond = poses.back().bucket.x> 4.5;
+  EXPECT_TRUE(is_before || is_beyond);
+}
+
 /// Fails under the sanitizers if it reads beside the map.
 TEST(JobFrame, OfADesignOverTheWholeScanEndsWithIt) {
   const JobFrame frame = HandMadeJob(40.0, 40.0).frame();
@@ -1015,6 +1030,24 @@ TEST(LaneView, ItsFloorIsTheDesignAndAboveAKeepOut) {
   for (double x = 5.05; x < 5.95; x += 0.1) EXPECT_GE(floor(x), -0.2 - 1e-9) << x;
   for (double x = 8.05; x < 8.45; x += 0.1) EXPECT_FALSE(floor(x) < -1e-9) << x;
   EXPECT_FALSE(floor(-1.0) < -1e-9);
+}
+
+TEST(LaneView, OneCellThatIsNotKnownIsUnderTheBucketOrBesideIt) {
+  HandMadeJob job;
+  const auto known = [&](double x, double y, double from, double to) {
+    Terrain ground = job.ground;
+    const auto cell = cell_at(ground.bank, x, y);
+    ground.bank.z(cell->row, cell->col) = std::nan("");
+    const Machine& machine = job.settings.site.machine;
+    const LaneView view(ground, job.map(), dig_line({0.0, 0.0, 0.0, 0.0}), {-2.0, -2.0, 12.0, 2.0},
+                        machine.bucket.width_outside);
+    return view.is_known(from, to);
+  };
+  EXPECT_FALSE(known(5.02, 0.02, 4.0, 6.0));
+  EXPECT_FALSE(known(5.02, -0.37, 4.0, 6.0));
+  EXPECT_TRUE(known(5.02, 0.8, 4.0, 6.0));
+  EXPECT_TRUE(known(6.4, 0.02, 4.0, 6.0));
+  EXPECT_FALSE(known(11.0, 1.5, 4.0, 12.5)) << "beside the map";
 }
 
 /// A bank of 0.3 m at the right of the lane y = 0, so wide [m], over a floor at -0.5 m.
