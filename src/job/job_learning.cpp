@@ -107,4 +107,17 @@ double JobLearning::strength_factor(int deviations) const {
 }
 double JobLearning::hard_factor() const { return strength_factor(1); }
 
+SoilKind with_strength(SoilKind soil, double factor) {
+  soil.cohesion_loosest *= factor;
+  soil.cone_index_reference *= factor;
+  return soil;
+}
+
+WallSoil wall_soil(const SoilKind& soil, double density_percent, const JobLearning& learnt) {
+  const auto at = [&](int deviations) {
+    return bank_state(with_strength(soil, learnt.strength_factor(deviations)), density_percent);
+  };
+  return {at(0), at(-1)};
+}
+
 }  // namespace excavplan

@@ -6,6 +6,8 @@
 #include <excavplan/job/job_step.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 
+#include "design/design_walls.hpp"
+
 /// @file
 /// What a job learns of soil and machine from what was foretold and what came. Private to the
 /// project.
@@ -65,5 +67,11 @@ struct JobLearning {
   double strength_factor(int deviations = 0) const;
   double hard_factor() const;  ///< that a dig should not stall at
 };
+
+/// The same soil, so many times as strong.
+SoilKind with_strength(SoilKind soil, double factor);
+/// Undisturbed soil of a density as told: as believed, and as strong as it surely is, a deviation
+/// below that.
+WallSoil wall_soil(const SoilKind& soil, double density_percent, const JobLearning& learnt = {});
 
 }  // namespace excavplan

@@ -15,6 +15,7 @@
 #include "base/check.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "design/design_walls.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_ground.hpp"
 #include "job/job_log.hpp"
@@ -24,7 +25,6 @@
 #include "job/station_place.hpp"
 #include "job/step_motion.hpp"
 #include "job/step_search.hpp"
-#include "job/wall_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -65,7 +65,7 @@ constexpr int most_blocked = 4;   // digs from one place whose way is blocked, b
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
 constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
-constexpr double beside_wall = 1.0;          // of a dig, so that it is one at the wall [m]
+constexpr double beside_wall = 0.25;         // of the bucket, so that it digs at the wall [m]
 constexpr double after_stall = 0.7;          // of the depth of a cut
 constexpr double after_success = 1.1;        // likewise
 constexpr double shallowest_cut = 0.06;      // [m]
@@ -203,7 +203,11 @@ struct SiteJob::State {
   bool check_motion(JobStep& step);
   JobStep with_walls_checked(JobStep step) const;
   WallTask wall_task() const {
-    return {settings, map, ground.expected(), record.base, record.learning.strength_factor(-1)};
+    const SoilKind& soil = settings.site.soil;
+    const WallSoil bank = wall_soil(soil, settings.density_percent, record.learning);
+    return {map.target, map.before,        ground.expected(),
+            bank,       loose_state(soil), settings.site.machine,
+            record.base};
   }
   bool may_keep(double more) const;
   int most_passes_here() const {

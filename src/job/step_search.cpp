@@ -675,12 +675,6 @@ class StepSearch {
 
 }  // namespace
 
-SoilKind with_strength(SoilKind soil, double factor) {
-  soil.cohesion_loosest *= factor;
-  soil.cone_index_reference *= factor;
-  return soil;
-}
-
 bool can_hold_load(const SoilKind& soil, const DigPath& path) {
   const double floor = path.parameters.penetration_angle + path.heel_clearance;
   return floor <= holding * soil.angle_of_repose;

@@ -69,7 +69,4 @@ DumpPlace seen_from(DumpPlace dump, double turned);
 /// @param carried  before it [kg]
 CycleOptions cycle_after(const DumpPlace& dump, bool keeps_load, double carried = 0.0);
 
-/// The same soil, so many times as strong.
-SoilKind with_strength(SoilKind soil, double factor);
-
 }  // namespace excavplan

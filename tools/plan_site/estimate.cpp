@@ -10,7 +10,8 @@
 #include <excavplan/job/site_job.hpp>
 
 #include "base/text.hpp"
-#include "job/wall_check.hpp"
+#include "design/design_walls.hpp"
+#include "job/job_learning.hpp"
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
@@ -43,7 +44,7 @@ PlannedCut cut_in(const JobInputs& inputs) {
 /// Of a trench in words, whose ground is not known but as told.
 void add_walls(const PlannedCut& cut, const GroundDensity& density, Outcome& outcome) {
   if (!cut.words) return;
-  const SoilState bank = surely_strong(cut.site.soil, density.percent);
+  const WallSoil bank = wall_soil(cut.site.soil, density.percent);
   if (const auto wall = weak_wall(bank, *cut.words->depth, cut.words->batter))
     outcome.warnings.push_back(warning_of(*wall));
 }

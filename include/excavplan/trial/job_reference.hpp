@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/job/full_dig.hpp>
+#include <excavplan/planning/full_dig.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
 namespace excavplan {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/job/full_dig.hpp>
+#include <excavplan/planning/full_dig.hpp>
 
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/simulation/dig_ground.hpp>

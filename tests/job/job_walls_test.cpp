@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "job/wall_check.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "design/design_walls.hpp"
 #include "job/job_learning.hpp"
 #include "job/job_map.hpp"
 #include "job/trench_job.hpp"
@@ -33,13 +32,21 @@ class Walls {
         map_(map_of(of_.settings, ground.bank)) {}
 
   std::optional<DesignWall> weakest(const std::optional<BasePose>& base = {}) const {
-    return weakest_wall({of_.settings, map_, ground, base, strength});
+    return weakest_wall(task(base));
   }
   std::optional<DesignWall> weakest_about(const std::vector<Eigen::Vector2d>& about) const {
-    return weakest_wall({of_.settings, map_, ground, {}, strength}, about, 0.5);
+    return weakest_wall(task({}), about, 0.5);
   }
 
  private:
+  WallTask task(const std::optional<BasePose>& base) const {
+    const SoilKind& soil = of_.settings.site.soil;
+    const SoilState state = bank_state(with_strength(soil, strength), of_.settings.density_percent);
+    const WallSoil bank = {state, state};
+    return {map_.target, map_.before, ground, bank, loose_state(soil), of_.settings.site.machine,
+            base};
+  }
+
   TrenchJob of_;
 
  public:
@@ -50,7 +57,7 @@ class Walls {
   JobMap map_;
 };
 
-TEST(WallCheck, AShallowTrenchStandsInLoamAndNotInSand) {
+TEST(JobWalls, AShallowTrenchStandsInLoamAndNotInSand) {
   const Cut in_loam(0.5), in_sand(0.5, "sand"), battered(0.5, "sand", 1.73);
   EXPECT_FALSE(Walls(in_loam).weakest());
   EXPECT_FALSE(Walls(battered).weakest());
@@ -65,13 +72,13 @@ TEST(WallCheck, AShallowTrenchStandsInLoamAndNotInSand) {
   EXPECT_FALSE(Walls(better).weakest()) << "the batter that it asks for";
 }
 
-TEST(WallCheck, GravelStandsAtItsFrictionAngle) {
+TEST(JobWalls, GravelStandsAtItsFrictionAngle) {
   const Cut flat(0.5, "gravel", 1.73), steep(0.5, "gravel", 1.0);
   EXPECT_FALSE(Walls(flat).weakest());
   EXPECT_TRUE(Walls(steep).weakest());
 }
 
-TEST(WallCheck, ADeepCutMayNotCountOnMoisture) {
+TEST(JobWalls, ADeepCutMayNotCountOnMoisture) {
   const Cut shallow(1.0, "sand", 1.2), deep(1.5, "sand", 1.2);
   EXPECT_FALSE(Walls(shallow).weakest());
   const auto wall = Walls(deep).weakest();
@@ -81,7 +88,7 @@ TEST(WallCheck, ADeepCutMayNotCountOnMoisture) {
   EXPECT_FALSE(Walls(flat).weakest());
 }
 
-TEST(WallCheck, SoilThatIsNotSurelyStrongIsNotTrusted) {
+TEST(JobWalls, SoilThatIsNotSurelyStrongIsNotTrusted) {
   const Cut cut(1.5);
   Walls walls(cut);
   EXPECT_FALSE(walls.weakest());
@@ -92,7 +99,16 @@ TEST(WallCheck, SoilThatIsNotSurelyStrongIsNotTrusted) {
   EXPECT_LT(wall->factor, 1.3);
 }
 
-TEST(WallCheck, SpoilAndTracksAtTheEdgeLoadIt) {
+TEST(JobWalls, DeepOnesMustStandInSoilAsStrongAsItSurelyIs) {
+  const SoilKind loam = load_soil(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/loam.json");
+  const WallSoil bank = wall_soil(loam, 10.0);
+  EXPECT_LT(bank.sure.cohesion, 0.6 * bank.believed.cohesion);
+  EXPECT_FALSE(weak_wall(bank, 1.2, 0.0)) << "upright as rules let it be";
+  EXPECT_TRUE(weak_wall(bank, 1.3, 0.0));
+  EXPECT_FALSE(weak_wall(bank, 1.3, 1.0));
+}
+
+TEST(JobWalls, SpoilAndTracksAtTheEdgeLoadIt) {
   const Cut cut(1.5);
   Walls walls(cut);
   walls.strength = 0.75;
@@ -114,21 +130,20 @@ TEST(WallCheck, SpoilAndTracksAtTheEdgeLoadIt) {
   EXPECT_NEAR(by_spoil->edge->y(), -0.5, 0.1);
 }
 
-TEST(WallCheck, InLevelGroundIsThatOfTheDesign) {
+TEST(JobWalls, InLevelGroundIsThatOfTheDesign) {
   const Cut cut(0.5, "sand");
   Walls walls(cut);
-  walls.strength = JobLearning{}.strength_factor(-1);
   const auto there = walls.weakest();
   const SoilKind sand = load_soil(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/sand.json");
-  const auto alone = weak_wall(surely_strong(sand, 40.0), 0.5, 0.0);
+  const auto alone = weak_wall(wall_soil(sand, 40.0), 0.5, 0.0);
   ASSERT_TRUE(there && alone);
   EXPECT_NEAR(alone->factor, there->factor, 0.02);
   EXPECT_EQ(alone->standing, there->standing);
   EXPECT_EQ(warning_of(*alone).message.find(" at x ="), std::string::npos);
-  EXPECT_FALSE(weak_wall(surely_strong(sand, 40.0), 0.2, 0.0)) << "no wall to speak of";
+  EXPECT_FALSE(weak_wall(wall_soil(sand, 40.0), 0.2, 0.0)) << "no wall to speak of";
 }
 
-TEST(WallCheck, OnlyWallsNearbyAreLookedAt) {
+TEST(JobWalls, OnlyWallsNearbyAreLookedAt) {
   const Cut cut(0.5, "sand");
   const Walls walls(cut);
   const auto near = walls.weakest_about({{2.2, -0.5}, {3.0, -0.5}});
@@ -138,7 +153,7 @@ TEST(WallCheck, OnlyWallsNearbyAreLookedAt) {
   EXPECT_FALSE(walls.weakest_about({{2.0, -4.0}, {6.0, -4.0}}));
 }
 
-TEST(WallCheck, StepsAtAWallThatMayFailAreNotTrusted) {
+TEST(JobWalls, StepsAtAWallThatMayFailAreNotTrusted) {
   const Cut cut(0.5, "sand");
   TrenchJob of(cut);
   SiteJob job = of.begin();
@@ -159,7 +174,7 @@ TEST(WallCheck, StepsAtAWallThatMayFailAreNotTrusted) {
   }));
 }
 
-TEST(WallCheck, StepsInSoilThatStandsAreTrusted) {
+TEST(JobWalls, StepsInSoilThatStandsAreTrusted) {
   const ShortTrench trench;
   TrenchJob of(trench);
   SiteJob job = of.begin();

@@ -9,23 +9,30 @@
 
 #include <excavplan/base/warning.hpp>
 #include <excavplan/ground/terrain.hpp>
-#include <excavplan/job/job_settings.hpp>
+#include <excavplan/machine/base_pose.hpp>
+#include <excavplan/machine/machine.hpp>
 #include <excavplan/soil/soil.hpp>
-
-#include "job/job_map.hpp"
 
 /// @file
 /// Whether the walls of a design stand once they are dug. Private to the project.
 
 namespace excavplan {
 
+/// Undisturbed soil beside a wall.
+struct WallSoil {
+  SoilState believed;  ///< counts for walls that rules let stand without a proof
+  SoilState sure;      ///< as strong as it surely is: for others
+};
+
 /// What walls are looked at for.
 struct WallTask {
-  const JobSettings& settings;
-  const JobMap& map;
-  const Terrain& ground;         ///< with the spoil that lies on it
-  std::optional<BasePose> base;  ///< of a machine that stands by
-  double strength_factor = 1.0;  ///< on the soil's strength, as it is surely known
+  const HeightMap& target;        ///< height of the design; NaN beside it [m]
+  const Eigen::ArrayXXd& before;  ///< of the ground before the job, on its cells [m]
+  const Terrain& ground;          ///< with the spoil that lies on it
+  WallSoil bank;
+  SoilState loose;  ///< spoil
+  const Machine& machine;
+  std::optional<BasePose> base = {};  ///< of a machine that stands by
 };
 
 /// A wall of the design, in a section across its edge.
@@ -46,11 +53,8 @@ std::optional<DesignWall> weakest_wall(const WallTask& task,
                                        const std::vector<Eigen::Vector2d>& about = {},
                                        double within = 0.0);
 
-/// Undisturbed soil as strong as it surely is before any dig told of it.
-SoilState surely_strong(const SoilKind& soil, double density_percent);
-
 /// A wall of that height and batter in level ground, with nothing beside it; nothing if it stands.
-std::optional<DesignWall> weak_wall(const SoilState& bank, double height, double batter);
+std::optional<DesignWall> weak_wall(const WallSoil& bank, double height, double batter);
 
 /// An unstable_wall.
 Warning warning_of(const DesignWall& wall);

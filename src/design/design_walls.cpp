@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "job/wall_check.hpp"
+#include "design/design_walls.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,7 @@
 
 #include "base/plan_geometry.hpp"
 #include "base/text.hpp"
-#include "job/job_learning.hpp"
-#include "job/step_search.hpp"
+#include "ground/grid_cells.hpp"
 
 namespace excavplan {
 namespace {
@@ -51,9 +50,13 @@ double distance_to(const std::vector<Vector2d>& line, const Vector2d& place) {
   return least;
 }
 
-SoilState soil_at(const SoilState& bank, double height) {
-  SoilState soil = bank;
-  if (height > proof_from && soil.cohesion <= apparent_cohesion) soil.cohesion = 0.0;
+bool needs_proof(double height, double batter) {
+  return height > proof_from && batter < proof_below_batter;
+}
+
+SoilState soil_at(const WallSoil& bank, const DesignWall& wall) {
+  SoilState soil = needs_proof(wall.height, wall.batter) ? bank.sure : bank.believed;
+  if (wall.height > proof_from && soil.cohesion <= apparent_cohesion) soil.cohesion = 0.0;
   return soil;
 }
 
@@ -62,23 +65,19 @@ DesignWall wall_of(double height, double batter) {
   DesignWall wall;
   wall.height = height;
   wall.batter = batter;
-  wall.least = height > proof_from && batter < proof_below_batter ? least_proven : least_usual;
+  wall.least = needs_proof(height, batter) ? least_proven : least_usual;
   return wall;
 }
 
-std::optional<double> batter_for(const SoilState& bank, const DesignWall& wall) {
+std::optional<double> batter_for(const WallSoil& bank, const DesignWall& wall) {
   SoilFace face;
   face.height = wall.height;
-  return standing_batter(soil_at(bank, wall.height), face, wall.least);
+  return standing_batter(soil_at(bank, wall), face, wall.least);
 }
 
 class WallCheck {
  public:
-  explicit WallCheck(const WallTask& task)
-      : task_(task),
-        bank_(bank_state(with_strength(task.settings.site.soil, task.strength_factor),
-                         task.settings.density_percent)),
-        loose_(loose_state(task.settings.site.soil)) {}
+  explicit WallCheck(const WallTask& task) : task_(task) {}
 
   std::optional<DesignWall> weakest(const std::vector<Vector2d>& about, double within) const {
     std::optional<DesignWall> weakest;
@@ -95,23 +94,23 @@ class WallCheck {
       if (!wall || wall->factor >= wall->least) continue;
       if (!weakest || wall->factor / wall->least < weakest->factor / weakest->least) weakest = wall;
     }
-    if (weakest) weakest->standing = batter_for(bank_, *weakest);
+    if (weakest) weakest->standing = batter_for(task_.bank, *weakest);
     return weakest;
   }
 
  private:
   Vector2d place_of(Cell cell) const {
-    return {task_.map.target.x(cell.col), task_.map.target.y(cell.row)};
+    return {task_.target.x(cell.col), task_.target.y(cell.row)};
   }
   bool is_design(Index row, Index col) const {
-    const Eigen::ArrayXXd& z = task_.map.target.z;
+    const Eigen::ArrayXXd& z = task_.target.z;
     return row >= 0 && col >= 0 && row < z.rows() && col < z.cols() && !std::isnan(z(row, col));
   }
 
   /// Cells of the design beside which there is none.
   std::vector<Edge> edges() const {
     std::vector<Edge> found;
-    for_each_cell(task_.map.target.z, [&](Cell at) {
+    for_each_cell(task_.target.z, [&](Cell at) {
       if (!is_design(at.row, at.col)) return;
       if (is_design(at.row - 1, at.col) && is_design(at.row + 1, at.col) &&
           is_design(at.row, at.col - 1) && is_design(at.row, at.col + 1))
@@ -130,20 +129,20 @@ class WallCheck {
 
   /// Of an array on the map's cells; NaN beside it.
   double at(const Eigen::ArrayXXd& values, const Vector2d& place) const {
-    const auto cell = cell_at(task_.map.target, place.x(), place.y());
+    const auto cell = cell_at(task_.target, place.x(), place.y());
     return cell ? values(cell->row, cell->col) : std::nan("");
   }
 
   /// The face from the edge to the foot of what is cut there.
   std::optional<DesignWall> wall_at(const Edge& edge) const {
     const Vector2d place = place_of(edge.cell);
-    const double cell = task_.map.target.cell_size;
-    const double top = at(task_.map.before, place);
+    const double cell = task_.target.cell_size;
+    const double top = at(task_.before, place);
     if (std::isnan(top)) return std::nullopt;
     std::vector<double> depths;
     double deepest = 0.0;
     for (double run = 0.0;; run += cell) {
-      const double target = at(task_.map.target.z, place - run * edge.outward);
+      const double target = at(task_.target.z, place - run * edge.outward);
       if (std::isnan(target)) break;
       depths.push_back(top - target);
       deepest = std::max(deepest, depths.back());
@@ -154,7 +153,7 @@ class WallCheck {
                                   [&](double depth) { return depth >= nearly * deepest; });
     DesignWall wall = wall_of(deepest, static_cast<double>(toe - depths.begin()) * cell / deepest);
     wall.edge = place;
-    wall.factor = factor_of_safety(soil_at(bank_, deepest), face_of(wall, edge.outward));
+    wall.factor = factor_of_safety(soil_at(task_.bank, wall), face_of(wall, edge.outward));
     return wall;
   }
 
@@ -162,7 +161,7 @@ class WallCheck {
     SoilFace face;
     face.height = wall.height;
     face.run = wall.batter * wall.height;
-    const double top = at(task_.map.before, *wall.edge);
+    const double top = at(task_.before, *wall.edge);
     for (double x = 0.5 * face.load_step; x < loaded_over * wall.height; x += face.load_step)
       face.loads.push_back(load_on(*wall.edge + x * outward, top));
     return face;
@@ -171,16 +170,18 @@ class WallCheck {
   /// Of ground higher than the edge, of spoil and of tracks [Pa].
   double load_on(const Vector2d& place, double edge) const {
     double load = 0.0;
-    const double ground = at(task_.map.before, place);
-    if (ground > edge) load += bank_.unit_weight * (ground - edge);
+    const double ground = at(task_.before, place);
+    if (ground > edge) load += task_.bank.believed.unit_weight * (ground - edge);
     const auto cell = cell_at(task_.ground.bank, place.x(), place.y());
-    const double now = cell ? surface_of(task_.ground, *cell) : std::nan("");
-    if (now > ground) load += loose_.unit_weight * (now - ground);
+    const double now =
+        cell ? task_.ground.bank.z(cell->row, cell->col) + task_.ground.loose(cell->row, cell->col)
+             : std::nan("");
+    if (now > ground) load += task_.loose.unit_weight * (now - ground);
     return load + track_pressure(place);
   }
 
   double track_pressure(const Vector2d& place) const {
-    const Machine& machine = task_.settings.site.machine;
+    const Machine& machine = task_.machine;
     if (!task_.base || !machine.body) return 0.0;
     const PlanFrame frame({task_.base->x, task_.base->y}, task_.base->heading);
     const Vector2d on = frame.of(place);
@@ -195,8 +196,6 @@ class WallCheck {
   }
 
   const WallTask& task_;
-  SoilState bank_;
-  SoilState loose_;
 };
 
 }  // namespace
@@ -206,17 +205,13 @@ std::optional<DesignWall> weakest_wall(const WallTask& task, const std::vector<V
   return WallCheck(task).weakest(about, within);
 }
 
-SoilState surely_strong(const SoilKind& soil, double density_percent) {
-  return bank_state(with_strength(soil, JobLearning{}.strength_factor(-1)), density_percent);
-}
-
-std::optional<DesignWall> weak_wall(const SoilState& bank, double height, double batter) {
+std::optional<DesignWall> weak_wall(const WallSoil& bank, double height, double batter) {
   if (height < lowest_wall) return std::nullopt;
   DesignWall wall = wall_of(height, batter);
   SoilFace face;
   face.height = height;
   face.run = batter * height;
-  wall.factor = factor_of_safety(soil_at(bank, height), face);
+  wall.factor = factor_of_safety(soil_at(bank, wall), face);
   if (wall.factor >= wall.least) return std::nullopt;
   wall.standing = batter_for(bank, wall);
   return wall;
