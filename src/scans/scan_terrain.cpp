@@ -221,29 +221,29 @@ struct SeenGround {
 
 }  // namespace
 
-ScannedTerrain terrain_from_scan(const Scan& given, const Rectangle& extent, double cell_size) {
+ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
   require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
           "> 0 m and finite");
   std::optional<Warning> no_data;
-  const Scan scan = of_data(given, &no_data);
-  const SeenGround seen(scan, extent, cell_size);
-  ScannedTerrain result{seen.terrain, scan.doubts};
+  const Scan data = of_data(scan, &no_data);
+  const SeenGround seen(data, extent, cell_size);
+  ScannedTerrain result{seen.terrain, data.doubts};
   if (no_data) result.warnings.push_back(std::move(*no_data));
   const double wide = std::sqrt(enough_for_two / seen.points.density);
   const Surface& tested = wide > seen.cell ? surface_of(seen.points, wide) : seen.surface;
-  if (auto both = overlaid(name_of(scan), tested, result.terrain)) {
+  if (auto both = overlaid(name_of(data), tested, result.terrain)) {
     result.warnings.push_back(std::move(*both));
   }
   if (const double unseen = unseen_area(seen.ground); unseen > 0.0) {
     result.warnings.emplace_back(WarningCode::unseen_ground,
-                                 name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
+                                 name_of(data) + ": the scan does not see " + readable(unseen, 2) +
                                      " m2 of the ground within reach, in gaps wider than " +
                                      readable(seen.widest_gap, 2) + " m; no dig is planned there");
   }
   if (seen.cell > cell_size) {
     result.warnings.emplace_back(
         WarningCode::sparse_terrain,
-        name_of(scan) + ": " + readable(seen.points.density, 2) +
+        name_of(data) + ": " + readable(seen.points.density, 2) +
             " points per m2 are too few for cells of " + readable(cell_size, 2) +
             " m; heights are interpolated between cells of " + readable(seen.cell, 2) + " m");
   }
@@ -251,11 +251,11 @@ ScannedTerrain terrain_from_scan(const Scan& given, const Rectangle& extent, dou
   return result;
 }
 
-ScannedTerrain swing_terrain_from_scan(const Scan& given, const Machine& machine) {
-  const Scan scan = of_data(given);
+ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine) {
+  const Scan data = of_data(scan);
   const Rectangle extent = swing_extent(machine);
   const double cell_size = usual_cell(machine);
-  const Seen seen = seen_of(scan, extent);
+  const Seen seen = seen_of(data, extent);
   const auto ground_on = [&](double smallest) {
     const double cell = std::max(cell_size, smallest);
     const double widest_gap = std::clamp(motion_farthest - 2.0 * cell, 0.0, widest_filled);
@@ -265,10 +265,10 @@ ScannedTerrain swing_terrain_from_scan(const Scan& given, const Machine& machine
   // Lines of points are dense, and yet apart.
   if (!ground.z.isFinite().all()) ground = filled_from(ground, ground_on(motion_cell));
   const double ceiling = machine.boom_pin.y() + machine.full_length() + above_reach;
-  const SeenTops tops = seen_tops(cropped(scan, extent, shaped), ground,
+  const SeenTops tops = seen_tops(cropped(data, extent, shaped), ground,
                                   {cell_of(seen), ceiling, own_place(machine)});
   ground.z = (tops.highest > ground.z || ground.z.isNaN()).select(tops.highest, ground.z).eval();
-  return {terrain_with(std::move(ground), tops), scan.doubts};
+  return {terrain_with(std::move(ground), tops), data.doubts};
 }
 
 HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
