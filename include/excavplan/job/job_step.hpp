@@ -88,8 +88,8 @@ struct StepReport {
 
 /// What no such step can have led to is of another one.
 /// @throws Error (bad_input) if a number is not finite, a mass or a work is below 0, one is larger
-/// than any machine's (1e6 kg, 1e12 J), a base beyond 1e9 m or a time beyond 1e11 s, or a payload or
-/// a stall is of a step that does not dig
+/// than any machine's (1e6 kg, 1e12 J), a base beyond 1e9 m or a time beyond 1e11 s, or a payload
+/// or a stall is of a step that does not dig
 void require_report(const JobStep& step, const StepReport& report);
 
 /// Who decides the steps: SiteJob, or another policy that is to be compared with it.
