@@ -349,7 +349,7 @@ TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
   refuse("--base", "1e300,0,0", "start of the machine [m] is 1e+300");
   refuse("--soil", "peat", "peat");
   refuse("--scan", folder.file("none.asc"), "none.asc", 3);
-  const string cell = folder.file("cell.asc");
+  const std::string cell = folder.file("cell.asc");
   std::ofstream(cell) << "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0.1\n0\n";
   refuse("--scan", cell, "--scan: rasterise: extent");
   refuse("--design", letter, "--design excludes --trench");
