@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -47,6 +48,15 @@ inline bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::
     if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
   }
   return inside;
+}
+
+/// Of a place from the nearest point of a side from a to b.
+inline double distance_to_side(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                               const Eigen::Vector2d& b) {
+  const Eigen::Vector2d side = b - a;
+  const double length = side.squaredNorm();
+  const double along = length > 0.0 ? std::clamp((p - a).dot(side) / length, 0.0, 1.0) : 0.0;
+  return (p - a - along * side).norm();
 }
 
 /// Whether it lies in a polygon with eight places so far around it.

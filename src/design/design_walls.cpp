@@ -10,6 +10,7 @@
 #include "base/plan_geometry.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
+#include "machine/machine_mass.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,7 +31,6 @@ constexpr double between_walls = 0.5;  // [m]
 constexpr double farthest_toe = 3.0;   // of the height of a wall
 constexpr double nearly = 0.98;        // of a height: there is the toe
 constexpr double loaded_over = 2.0;    // beyond an edge, in heights
-constexpr double shoe = 0.25;          // of a track, of the width over both
 constexpr int direction_cells = 2;     // around a cell of the edge that tell its direction
 
 struct Edge {
@@ -40,13 +40,8 @@ struct Edge {
 
 double distance_to(const std::vector<Vector2d>& line, const Vector2d& place) {
   double least = (place - line.front()).norm();
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vector2d way = line[i] - line[i - 1];
-    const double square = way.squaredNorm();
-    const double share =
-        square > 0.0 ? std::clamp((place - line[i - 1]).dot(way) / square, 0.0, 1.0) : 0.0;
-    least = std::min(least, (place - line[i - 1] - share * way).norm());
-  }
+  for (std::size_t i = 1; i < line.size(); ++i)
+    least = std::min(least, distance_to_side(place, line[i - 1], line[i]));
   return least;
 }
 
@@ -69,10 +64,16 @@ DesignWall wall_of(double height, double batter) {
   return wall;
 }
 
-std::optional<double> batter_for(const WallSoil& bank, const DesignWall& wall) {
+/// With nothing beside it.
+SoilFace bare_face(const DesignWall& wall) {
   SoilFace face;
   face.height = wall.height;
-  return standing_batter(soil_at(bank, wall), face, wall.least);
+  face.run = wall.batter * wall.height;
+  return face;
+}
+
+std::optional<double> batter_for(const WallSoil& bank, const DesignWall& wall) {
+  return standing_batter(soil_at(bank, wall), bare_face(wall), wall.least);
 }
 
 class WallCheck {
@@ -158,9 +159,7 @@ class WallCheck {
   }
 
   SoilFace face_of(const DesignWall& wall, const Vector2d& outward) const {
-    SoilFace face;
-    face.height = wall.height;
-    face.run = wall.batter * wall.height;
+    SoilFace face = bare_face(wall);
     const double top = at(task_.before, *wall.edge);
     for (double x = 0.5 * face.load_step; x < loaded_over * wall.height; x += face.load_step)
       face.loads.push_back(load_on(*wall.edge + x * outward, top));
@@ -185,14 +184,8 @@ class WallCheck {
     if (!task_.base || !machine.body) return 0.0;
     const PlanFrame frame({task_.base->x, task_.base->y}, task_.base->heading);
     const Vector2d on = frame.of(place);
-    const double length = 2.0 * machine.track_front, width = machine.undercarriage_width();
-    const double beside = std::abs(on.y());
-    const bool is_under =
-        std::abs(on.x()) <= 0.5 * length && beside <= 0.5 * width && beside >= (0.5 - shoe) * width;
-    if (!is_under) return 0.0;
-    double mass = machine.body->mass;
-    for (const LinkMass& link : machine.links) mass += link.mass;
-    return mass * gravity / (2.0 * length * shoe * width);
+    const TrackPrint tracks(machine);
+    return tracks.covers(on.x(), on.y()) ? gravity * total_mass(machine) / tracks.area() : 0.0;
   }
 
   const WallTask& task_;
@@ -208,10 +201,7 @@ std::optional<DesignWall> weakest_wall(const WallTask& task, const std::vector<V
 std::optional<DesignWall> weak_wall(const WallSoil& bank, double height, double batter) {
   if (height < lowest_wall) return std::nullopt;
   DesignWall wall = wall_of(height, batter);
-  SoilFace face;
-  face.height = height;
-  face.run = batter * height;
-  wall.factor = factor_of_safety(soil_at(bank, wall), face);
+  wall.factor = factor_of_safety(soil_at(bank, wall), bare_face(wall));
   if (wall.factor >= wall.least) return std::nullopt;
   wall.standing = batter_for(bank, wall);
   return wall;

@@ -36,12 +36,8 @@ constexpr double most_gap = 0.1;           // between what is dug from two place
 
 double distance_to(const SitePolygon& polygon, const Vector2d& from) {
   double least = is_inside(polygon, from) ? 0.0 : (polygon.front() - from).norm();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d& a = polygon[i];
-    const Vector2d along = polygon[(i + 1) % polygon.size()] - a;
-    const double share = along.dot(from - a) / std::max(along.squaredNorm(), 1e-12);
-    least = std::min(least, (a + std::clamp(share, 0.0, 1.0) * along - from).norm());
-  }
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    least = std::min(least, distance_to_side(from, polygon[i], polygon[(i + 1) % polygon.size()]));
   return least;
 }
 

@@ -7,6 +7,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
+#include "machine/machine_mass.hpp"
 
 namespace excavplan {
 namespace {
@@ -82,8 +83,7 @@ const Machine* nearest_with_cylinders(const std::vector<const Proportioned*>& kn
 
 void add_cylinders(const std::vector<const Proportioned*>& known, const Machine& machine,
                    nlohmann::json& file) {
-  double mass = machine.body ? machine.body->mass : 0.0;
-  for (const LinkMass& link : machine.links) mass += link.mass;
+  const double mass = total_mass(machine);
   const Machine* like = nearest_with_cylinders(known, mass);
   json& source = file["sources"]["cylinders"];
   source = "none: no machine that this one is fitted from states them";

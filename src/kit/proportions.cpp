@@ -11,6 +11,7 @@
 
 #include "base/json.hpp"
 #include "machine/data_sheet_keys.hpp"
+#include "machine/machine_mass.hpp"
 
 namespace excavplan {
 namespace {
@@ -90,13 +91,11 @@ double measure(const string& place, const DataSheet& sheet, double length) {
 DataSheet sheet_of(const MachineFile& file) {
   const Machine& machine = file.machine;
   const Reach reaches = reach_of(machine);
-  double total = machine.body ? machine.body->mass : 0.0;
-  for (const LinkMass& link : machine.links) total += link.mass;
   DataSheet sheet = file.data_sheet;
   const auto fill = [&](std::optional<double> DataSheet::*figure, double value) {
     if (!(sheet.*figure)) sheet.*figure = value;
   };
-  fill(&DataSheet::operating_mass, total);
+  fill(&DataSheet::operating_mass, total_mass(machine));
   fill(&DataSheet::bucket_capacity, heaped_capacity(machine));
   fill(&DataSheet::bucket_force, bucket_force(machine));
   fill(&DataSheet::arm_force, arm_force(machine));

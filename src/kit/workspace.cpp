@@ -12,6 +12,7 @@
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "machine/data_sheet_keys.hpp"
+#include "machine/machine_mass.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -157,9 +158,7 @@ bool is_empty(const DataSheet& sheet) {
 
 void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& sheet,
                std::vector<Warning>& warnings) {
-  double mass = machine.body ? machine.body->mass : std::nan("");
-  for (const LinkMass& link : machine.links) mass += link.mass;
-  if (machine.body) compare("mass [kg]", sheet.operating_mass, mass, warnings);
+  if (machine.body) compare("mass [kg]", sheet.operating_mass, total_mass(machine), warnings);
   compare("heaped capacity of the bucket [m3]", sheet.bucket_capacity, heaped_capacity(machine),
           warnings);
   compare("digging force of the bucket [N]", sheet.bucket_force, bucket_force(machine), warnings);

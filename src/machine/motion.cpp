@@ -13,7 +13,7 @@
 #include "machine/corner_rules.hpp"
 #include "machine/drive_limits.hpp"
 #include "machine/front_check.hpp"
-#include "machine/front_mass.hpp"
+#include "machine/machine_mass.hpp"
 #include "machine/motion_path.hpp"
 
 namespace excavplan {

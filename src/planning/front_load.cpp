@@ -8,7 +8,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "base/angles.hpp"
-#include "machine/front_mass.hpp"
+#include "machine/machine_mass.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {

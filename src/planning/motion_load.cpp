@@ -9,7 +9,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "base/text.hpp"
-#include "machine/front_mass.hpp"
+#include "machine/machine_mass.hpp"
 #include "planning/front_load.hpp"
 
 namespace excavplan {

@@ -8,6 +8,7 @@
 #include <excavplan/machine/kinematics.hpp>
 
 #include "base/check.hpp"
+#include "base/plan_geometry.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -23,14 +24,6 @@ Eigen::Vector2d place(const Eigen::Vector2d& pin, double angle, const Eigen::Vec
 /// mean of both halves' middles, (start + 2 knee + end) / 4.
 Eigen::Vector2d knee(const LinkMass& link, double length) {
   return {2.0 * link.along - 0.5 * length, 2.0 * link.across};
-}
-
-double distance_to_side(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
-                        const Eigen::Vector2d& b) {
-  const Eigen::Vector2d side = b - a;
-  const double length = side.squaredNorm();
-  const double along = length > 0.0 ? std::clamp((p - a).dot(side) / length, 0.0, 1.0) : 0.0;
-  return (p - a - along * side).norm();
 }
 
 /// True inside an outline, or within `margin` of it.

@@ -19,7 +19,7 @@
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
 #include "ground/terrain.hpp"
-#include "machine/front_mass.hpp"
+#include "machine/machine_mass.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/dig_account.hpp"
 #include "soil/soil.hpp"

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include "base/angles.hpp"
 #include "base/check.hpp"
 
 namespace excavplan {
@@ -19,9 +18,10 @@ using Eigen::Vector2d;
 
 // Numbers of our own choice.
 constexpr int slices = 24;
-constexpr int most_rounds = 30;        // of Bishop's factor
-constexpr double same_factor = 1e-6;   // between two of them
-constexpr double least_bearing = 0.2;  // cos a + sin a tan phi / F (Whitman and Bailey 1967)
+constexpr int most_rounds = 30;       // of Bishop's factor
+constexpr double same_factor = 1e-6;  // between two of them
+constexpr double least_bearing =
+    0.2;  // cos a + sin a tan phi / F (Whitman and Bailey 1967, recalled)
 constexpr double nearest_exit = 0.02;  // of a slip behind the edge, in heights
 constexpr double farthest_exit = 3.0;  // likewise
 constexpr int exits = 20;              // that are looked at between them
@@ -42,9 +42,7 @@ class FaceStability {
  public:
   FaceStability(const SoilState& soil, const SoilFace& face, double crack)
       : soil_(soil), face_(face), friction_(std::tan(soil.friction_angle)) {
-    const double open =
-        2.0 * soil.cohesion / soil.unit_weight * std::tan(0.25 * pi + 0.5 * soil.friction_angle);
-    crack_ = std::min(open, crack * face.height);
+    crack_ = std::min(0.5 * critical_height(soil), crack * face.height);
   }
 
   double least() const {

@@ -26,10 +26,9 @@ struct Cut : PlainSiteFolder {
 
 class Walls {
  public:
-  explicit Walls(const Cut& cut)
-      : of_(cut),
-        ground(undisturbed(flat_ground({-8.0, -7.0, 10.0, 7.0}, 0.05))),
-        map_(map_of(of_.settings, ground.bank)) {}
+  /// @param rise  of the ground from 0.3 m beside the trench on [m]
+  explicit Walls(const Cut& cut, double rise = 0.0)
+      : of_(cut), ground(rising(rise)), map_(map_of(of_.settings, ground.bank)) {}
 
   std::optional<DesignWall> weakest(const std::optional<BasePose>& base = {}) const {
     return weakest_wall(task(base));
@@ -39,6 +38,13 @@ class Walls {
   }
 
  private:
+  static Terrain rising(double rise) {
+    HeightMap level = flat_ground({-8.0, -7.0, 10.0, 7.0}, 0.05);
+    for (Eigen::Index row = 0; row < level.z.rows(); ++row) {
+      if (std::abs(level.y(row)) > 0.8) level.z.row(row) += rise;
+    }
+    return undisturbed(level);
+  }
   WallTask task(const std::optional<BasePose>& base) const {
     const SoilKind& soil = of_.settings.site.soil;
     const SoilState state = bank_state(with_strength(soil, strength), of_.settings.density_percent);
@@ -128,6 +134,14 @@ TEST(JobWalls, SpoilAndTracksAtTheEdgeLoadIt) {
   const auto by_spoil = walls.weakest();
   ASSERT_TRUE(by_spoil);
   EXPECT_NEAR(by_spoil->edge->y(), -0.5, 0.1);
+}
+
+TEST(JobWalls, HigherGroundBesideThemLoadsThem) {
+  const Cut cut(1.5);
+  Walls level(cut), below_a_bank(cut, 1.5);
+  level.strength = below_a_bank.strength = 0.75;
+  EXPECT_FALSE(level.weakest());
+  EXPECT_TRUE(below_a_bank.weakest());
 }
 
 TEST(JobWalls, InLevelGroundIsThatOfTheDesign) {

@@ -17,7 +17,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "base/random.hpp"
-#include "machine/front_mass.hpp"
+#include "machine/machine_mass.hpp"
 #include "planning/front_load.hpp"
 #include "planning/motion_load.hpp"
 

@@ -33,7 +33,7 @@ SoilFace face(double height, double angle) {
 }
 
 /// c / (gamma H) at which faces just stand, by the friction circle: Taylor, Stability of Earth
-/// Slopes, 1937; for friction angles of 0, 5 .. 25 degrees.
+/// Slopes, 1937, recalled; for friction angles of 0, 5 .. 25 degrees.
 struct StabilityNumbers {
   double angle;  ///< of the face [deg]
   std::array<double, 6> at_friction;

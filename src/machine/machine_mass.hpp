@@ -9,9 +9,39 @@
 
 #include "machine/plane.hpp"
 
-/// @file Masses of the front about the swing axis. Private to the project.
+/// @file
+/// Masses of a machine: all of it and what bears it, its front about the swing axis. Private to the
+/// project.
 
 namespace excavplan {
+
+/// Of body and links; of the links alone where the body is not known [kg].
+inline double total_mass(const Machine& machine) {
+  double mass = machine.body ? machine.body->mass : 0.0;
+  for (const LinkMass& link : machine.links) mass += link.mass;
+  return mass;
+}
+
+/// Where the tracks lie on the ground, in the frame of the machine.
+struct TrackPrint {
+  /// Width of one track over that of both: 0.5 m of the zx120's.
+  static constexpr double shoe_share = 0.2;
+
+  explicit TrackPrint(const Machine& machine)
+      : length(2.0 * machine.track_front),
+        half(0.5 * machine.undercarriage_width()),
+        shoe(2.0 * shoe_share * half) {}
+
+  bool covers(double x, double y) const {
+    const double beside = std::abs(y);
+    return std::abs(x) <= 0.5 * length && beside <= half && beside >= half - shoe;
+  }
+  double area() const { return 2.0 * shoe * length; }  ///< of both [m^2]
+
+  double length;  ///< [m]
+  double half;    ///< from the middle to the outer side of a track [m]
+  double shoe;    ///< width of a track [m]
+};
 
 /// Centre of the bucket's cavity in the bucket frame, where the payload is taken to be.
 inline Eigen::Vector2d cavity_centre(const Bucket& bucket) {
