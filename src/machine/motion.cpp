@@ -172,11 +172,11 @@ std::vector<CellLimits> limits_of(const Machine& machine, const SmoothPath& path
 class Profile {
  public:
   /// @param limits  as they are at each run()
-  Profile(const SmoothPath& path, const std::vector<CellLimits>& limits,
-          const FrontJoints& acceleration, double per_power)
+  Profile(const SmoothPath& path, const std::vector<CellLimits>& limits, FrontJoints acceleration,
+          double per_power)
       : path_(path),
         limits_(limits),
-        acceleration_(acceleration),
+        acceleration_(std::move(acceleration)),
         per_power_(per_power),
         squared_(path.cells.size() + 1) {}
 
@@ -354,7 +354,7 @@ struct Smoothing {
       window = static_cast<std::size_t>(std::max(1.0, std::ceil(2.0 * used / (jerk * step))));
       acceleration = acceleration.cwiseMin(0.5 * jerk * step * static_cast<double>(window));
     }
-    const double wide = static_cast<double>(window);
+    const auto wide = static_cast<double>(window);
     const double variance = step * step * (4.0 + wide * wide - 1.0) / 12.0;
     acceleration = acceleration.cwiseMin(2.0 * off / variance);
   }
@@ -378,7 +378,7 @@ class SmoothMotion {
     for (std::size_t j = 0; j < samples.size() + window - 1; ++j) {
       sum += (j < samples.size() ? samples[j] : last) - first;
       if (j >= window) sum -= samples[j - window] - first;
-      control_.push_back(first + sum / static_cast<double>(window));
+      control_.emplace_back(first + sum / static_cast<double>(window));
     }
     control_.back() = last;
     control_.insert(control_.end(), 2, last);
