@@ -12,7 +12,7 @@
 #include "job/job_ground.hpp"
 #include "job/job_learning.hpp"
 #include "job/lane_view.hpp"
-#include "job/lookout.hpp"
+#include "scans/sensor_look.hpp"
 
 /// @file
 /// What a job remembers beside its ground, and its file. Private to the project.

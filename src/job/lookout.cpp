@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "base/angles.hpp"
 #include "base/parallel.hpp"
-#include "base/statistics.hpp"
 
 namespace excavplan {
 namespace {
@@ -24,21 +26,8 @@ constexpr double same_place = 1.0;         // [m]
 constexpr double farthest = 5.0;           // from the design along, from what is hidden across [m]
 constexpr std::size_t most_cells = 200;    // that are looked for from each place
 constexpr double least_revealed = 0.0005;  // of the design, to be worth a scan
-constexpr double way_price = 0.0001;       // of the design, for a metre of the way [1/m]
-constexpr double slack = 0.01;  // by which a ray may be within the ground that it passes [m]
-constexpr double outermost =
-    0.02;  // share of a cloud's points beside the sector that is counted on
-
-/// The highest ground between the eye and a place lies below the line of sight.
-bool is_open(const HeightMap& surface, const Vector3d& eye, const Vector3d& at) {
-  const Vector3d way = eye - at;
-  const double length = way.head<2>().norm();
-  for (double r = surface.cell_size; r < length; r += surface.cell_size) {
-    const Vector3d on = at + way * (r / length);
-    if (height_at(surface, on.x(), on.y()) > on.z() + slack) return false;
-  }
-  return true;
-}
+constexpr std::size_t most_looks = 3;      // that are planned at once
+constexpr double way_price = 0.0003;       // of the design, for a metre of the way [1/m]
 
 class Lookout {
  public:
@@ -49,29 +38,31 @@ class Lookout {
       ++all_;
       const double z = surface_.z(at.row, at.col);
       if (!std::isnan(task.seen(at.row, at.col)) || std::isnan(z)) return;
-      unseen.emplace_back(surface_.x(at.col), surface_.y(at.row), z);
+      const Vector3d place(surface_.x(at.col), surface_.y(at.row), z);
+      if (!is_dug_next(place)) unseen.push_back(place);
     });
     const std::size_t step = 1 + unseen.size() / most_cells;
     for (std::size_t i = 0; i < unseen.size(); i += step) hidden_.push_back(unseen[i]);
     weight_ = all_ > 0 ? static_cast<double>(step) / all_ : 0.0;
   }
 
+  /// Each of a few looks reveals most of what those before it do not; they are made in the order
+  /// of the shortest way.
   std::optional<JobStation> best() const {
     const std::vector<JobStation> places = candidates();
-    std::vector<double> revealed(places.size());
-    parallel_for(places.size(), 0, [&](std::size_t i) { revealed[i] = share_seen(places[i]); });
-    std::optional<JobStation> best;
-    double worth = 0.0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (revealed[i] < least_revealed) continue;
-      const Vector2d at = task_.frame.place(places[i].along, places[i].beside);
-      const double way = (at - Vector2d(task_.base.x, task_.base.y)).norm();
-      const double value = revealed[i] - way_price * way;
-      if (best && !(value > worth)) continue;
-      best = places[i];
-      worth = value;
+    std::vector<JobStation> looks;
+    std::vector<Vector3d> left = hidden_;
+    while (share(left) > task_.may_stay && looks.size() < std::min(task_.most, most_looks)) {
+      const auto place = most_revealing(places, left);
+      if (!place) break;
+      looks.push_back(*place);
+      const BasePose base = base_of(*place);
+      left.erase(std::remove_if(left.begin(), left.end(),
+                                [&](const Vector3d& at) { return sees_from(base, at); }),
+                 left.end());
     }
-    return best;
+    if (looks.empty()) return std::nullopt;
+    return first_of_shortest_way(looks);
   }
 
  private:
@@ -100,6 +91,67 @@ class Lookout {
     return places;
   }
 
+  bool is_dug_next(const Vector3d& at) const {
+    if (!task_.next) return false;
+    const JobStation& next = *task_.next;
+    const JobFrame line = line_of(next);
+    const WorkRange range = work_range(line, task_.settings.site.machine, next.along, next.is_wide);
+    return line.of(at.head<2>()).x() <= next.along + range.far;
+  }
+  JobFrame line_of(const JobStation& station) const {
+    return station.is_beyond ? reversed(task_.frame) : task_.frame;
+  }
+
+  double share(const std::vector<Vector3d>& cells) const {
+    return weight_ * static_cast<double>(cells.size());
+  }
+
+  std::optional<JobStation> most_revealing(const std::vector<JobStation>& places,
+                                           const std::vector<Vector3d>& hidden) const {
+    std::vector<double> revealed(places.size());
+    parallel_for(places.size(), 0,
+                 [&](std::size_t i) { revealed[i] = share_seen(places[i], hidden); });
+    std::optional<JobStation> best;
+    double worth = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (revealed[i] < least_revealed) continue;
+      const double value = revealed[i] - way_price * way_over({places[i]});
+      if (best && !(value > worth)) continue;
+      best = places[i];
+      worth = value;
+    }
+    return best;
+  }
+
+  JobStation first_of_shortest_way(const std::vector<JobStation>& looks) const {
+    std::vector<std::size_t> order(looks.size());
+    std::iota(order.begin(), order.end(), 0);
+    JobStation first = looks.front();
+    double shortest = std::numeric_limits<double>::infinity();
+    do {
+      std::vector<JobStation> way;
+      for (const std::size_t i : order) way.push_back(looks[i]);
+      const double length = way_over(way);
+      if (!(length < shortest)) continue;
+      shortest = length;
+      first = way.front();
+    } while (std::next_permutation(order.begin(), order.end()));
+    return first;
+  }
+
+  /// From where the machine is, and on to the next place to dig from, if there is one [m].
+  double way_over(const std::vector<JobStation>& places) const {
+    Vector2d from(task_.base.x, task_.base.y);
+    double length = 0.0;
+    const auto go = [&](const JobStation& place) {
+      const Vector2d to = line_of(place).place(place.along, place.beside);
+      length += (to - std::exchange(from, to)).norm();
+    };
+    std::for_each(places.begin(), places.end(), go);
+    if (task_.next) go(*task_.next);
+    return length;
+  }
+
   /// What was not seen from there will not be from beside it, whatever the map says.
   bool is_here(const JobStation& place) const {
     const Vector2d at = task_.frame.place(place.along, place.beside);
@@ -107,27 +159,20 @@ class Lookout {
   }
 
   /// Of the cells of the design.
-  double share_seen(const JobStation& place) const {
+  double share_seen(const JobStation& place, const std::vector<Vector3d>& hidden) const {
     if (is_here(place) || !can_stand(task_.frame, place, task_.settings.site.machine, task_.map))
       return 0.0;
-    const BasePose base = base_at(task_.frame, place, task_.ground, task_.settings.site.machine);
-    int seen = 0;
-    for (const Vector3d& at : hidden_) {
-      seen += std::any_of(task_.looks.begin(), task_.looks.end(),
-                          [&](const SensorLook& look) { return sees(look, base, at); });
-    }
-    return weight_ * seen;
+    const BasePose base = base_of(place);
+    const auto seen = std::count_if(hidden.begin(), hidden.end(),
+                                    [&](const Vector3d& at) { return sees_from(base, at); });
+    return weight_ * static_cast<double>(seen);
   }
-
-  bool sees(const SensorLook& look, const BasePose& base, const Vector3d& at) const {
-    const Eigen::Rotation2Dd turn(base.heading);
-    const Vector2d eye = Vector2d(base.x, base.y) + turn * look.from.head<2>();
-    const Vector2d way = at.head<2>() - eye;
-    const double height = base.z + look.from.z() - at.z();
-    if (way.norm() > look.range || std::atan2(height, way.norm()) > look.steepest) return false;
-    const double azimuth = std::atan2(way.y(), way.x()) - base.heading - look.azimuth;
-    if (std::abs(wrapped(azimuth)) > look.half_sector) return false;
-    return is_open(surface_, {eye.x(), eye.y(), at.z() + height}, at);
+  BasePose base_of(const JobStation& place) const {
+    return base_at(task_.frame, place, task_.ground, task_.settings.site.machine);
+  }
+  bool sees_from(const BasePose& base, const Vector3d& at) const {
+    return std::any_of(task_.looks.begin(), task_.looks.end(),
+                       [&](const SensorLook& look) { return sees(look, base, surface_, at); });
   }
 
   const LookTask& task_;
@@ -137,50 +182,7 @@ class Lookout {
   double weight_ = 0.0;  ///< of one of `hidden_`, as a share of the design
 };
 
-/// What points about their sensor say of its view; its azimuth is that of the site.
-SensorLook look_along(const std::vector<Vector3d>& ways) {
-  Vector2d sum = Vector2d::Zero();
-  for (const Vector3d& way : ways) sum += way.head<2>().normalized();
-  const double middle = std::atan2(sum.y(), sum.x());
-  std::vector<double> off, ranges, steep;
-  for (const Vector3d& way : ways) {
-    off.push_back(wrapped(std::atan2(way.y(), way.x()) - middle));
-    ranges.push_back(way.head<2>().norm());
-    steep.push_back(std::atan2(-way.z(), ranges.back()));
-  }
-  const double right = quantile(off, outermost), left = quantile(off, 1.0 - outermost);
-  SensorLook look;
-  look.azimuth = middle + 0.5 * (left + right);
-  look.half_sector = 0.5 * (left - right);
-  look.range = quantile(std::move(ranges), 1.0 - outermost);
-  look.steepest = quantile(std::move(steep), 1.0 - outermost);
-  return look;
-}
-
 }  // namespace
-
-std::vector<SensorLook> looks_of(const Scan& scan, const BasePose& base) {
-  std::vector<SensorLook> looks;
-  const Eigen::Isometry3d site_from_scan(scan.site_from_scan);
-  const Eigen::Rotation2Dd back(-base.heading);
-  for (const auto& cloud : scan.clouds) {
-    if (!cloud->sensor_origin) continue;
-    const Vector3d eye = site_from_scan * (scan.unit * *cloud->sensor_origin);
-    std::vector<Vector3d> ways;
-    for (const Vector3d& point : cloud->points) {
-      if (point.allFinite()) ways.emplace_back(site_from_scan * (scan.unit * point) - eye);
-    }
-    if (ways.empty()) continue;
-    SensorLook look = look_along(ways);
-    look.from.head<2>() = back * (eye.head<2>() - Vector2d(base.x, base.y));
-    look.from.z() = eye.z() - base.z;
-    look.azimuth = wrapped(look.azimuth - base.heading);
-    looks.push_back(look);
-  }
-  return looks;
-}
-
-std::vector<SensorLook> usual_looks() { return {{{0.6, 0.0, 3.0}, 0.0, pi, 12.0, 1.0}}; }
 
 std::optional<JobStation> best_lookout(const LookTask& task) { return Lookout(task).best(); }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -22,6 +23,7 @@
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
+#include "job/lookout.hpp"
 #include "job/station_place.hpp"
 #include "job/step_motion.hpp"
 #include "job/step_search.hpp"
@@ -60,10 +62,12 @@ constexpr double most_off = 0.042;           // share of cells that may stay so,
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double surely_in_shape = 0.9;      // share of what is allowed, of a wide design
-constexpr double well_seen = 0.992;          // of it, so that no more is looked for
+constexpr double well_seen = 0.9905;         // of it, so that no more is looked for
 constexpr int most_blocked = 4;   // digs from one place whose way is blocked, before it is left
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
 constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
+constexpr std::size_t looks_on_way = 3;      // to a place beyond the far end
+constexpr double near_well_seen = 0.996;     // then, as the far end will hide something too
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
 constexpr double beside_wall = 0.25;         // of the bucket, so that it digs at the wall [m]
 constexpr double after_stall = 0.7;          // of the depth of a cut
@@ -103,8 +107,10 @@ struct SiteJob::State {
       can_leave_end = !beyond.empty();
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
     }
-    const JobStation last = stations.back();
+    const JobStation last = stations.back(), lookout;
     std::vector<JobStation> ends = beyond;
+    // What the near end hides is seen on the way to the far one.
+    if (!beyond.empty() && !last.is_wide) ends.insert(ends.begin(), looks_on_way, lookout);
     if (last.is_wide) {  // each again, when the other is dug
       std::vector<JobStation> near;
       std::copy_if(stations.begin(), stations.end(), std::back_inserter(near),
@@ -116,7 +122,6 @@ struct SiteJob::State {
       }
     }
     stations.insert(stations.end(), ends.begin(), ends.end());
-    const JobStation lookout;
     stations.insert(stations.end(),
                     {lookout, lookout, lookout, lookout, last, lookout, lookout, lookout, lookout});
   }
@@ -183,6 +188,7 @@ struct SiteJob::State {
   std::optional<JobStation> place_to_dump_from();
   std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
+  LookTask look_task(const JobProgress& now) const;
   bool has_shape(const JobProgress& now, double share = 1.0) const {
     return now.p95 <= share * settings.design.tolerance &&
            now.beyond_twice <= share * most_beyond_twice;
@@ -578,14 +584,23 @@ JobStep SiteJob::State::decide() {
   return leave();
 }
 
+LookTask SiteJob::State::look_task(const JobProgress& now) const {
+  LookTask task{frame, settings, map, ground.expected(), ground.seen(), record.looks, record.base};
+  if (task.looks.empty()) task.looks = usual_looks();
+  const auto from = stations.begin() + static_cast<std::ptrdiff_t>(record.station);
+  const auto next = std::find_if_not(from, stations.end(), std::mem_fn(&JobStation::is_lookout));
+  task.most = static_cast<std::size_t>(next - from);
+  if (next != stations.end() && next->is_beyond && !is_shaped(now)) task.next = *next;
+  task.may_stay = 1.0 - (task.next ? near_well_seen : well_seen);
+  return task;
+}
+
 /// Where the present station is; nothing if there is nothing to do.
 std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) const {
   const JobStation& station = stations[record.station];
   if ((station.is_beyond || station.is_again) && is_shaped(now)) return std::nullopt;
   if (station.is_lookout()) {
-    if (now.seen >= well_seen) return std::nullopt;
-    return best_lookout({frame, settings, map, ground.expected(), ground.seen(),
-                         record.looks.empty() ? usual_looks() : record.looks, record.base});
+    return best_lookout(look_task(now));
   }
   const bool is_again = record.station > 0 && stations[record.station - 1].is_lookout();
   if ((is_again || station.is_again || station.is_beyond) && !wants_passes(base_of(station)))

@@ -625,7 +625,8 @@ TEST(ScanDatum, TheMeanOfAllScansTellsHowFarTheFirstWasOff) {
 
 /// A hand-made job that is dug, with a corner of its floor that was not seen.
 struct HiddenCorner : HandMadeJob {
-  HiddenCorner() {
+  /// @param far_hidden  from there the far end is hidden too, along the design [m]
+  explicit HiddenCorner(double far_hidden = 1e9) {
     const JobMap of_level = map();
     seen = Eigen::ArrayXXd::Zero(ground.bank.z.rows(), ground.bank.z.cols());
     for_each_cell(of_level.target.z, [&](Cell at) {
@@ -633,7 +634,7 @@ struct HiddenCorner : HandMadeJob {
       if (std::isnan(target)) return;
       dug.bank.z(at.row, at.col) = target;
       const bool is_hidden = ground.bank.x(at.col) < 0.4 && ground.bank.y(at.row) < -0.1;
-      if (is_hidden) seen(at.row, at.col) = std::nan("");
+      if (is_hidden || ground.bank.x(at.col) > far_hidden) seen(at.row, at.col) = std::nan("");
     });
   }
   std::optional<JobStation> best(const std::vector<SensorLook>& looks) const {
@@ -642,9 +643,42 @@ struct HiddenCorner : HandMadeJob {
     return best_lookout({lies, settings, of_level, dug, seen, looks, {-4.0, 0.0, 0.0, 0.0}});
   }
 
+  /// Of several looks, from where the machine is along the design.
+  std::optional<JobStation> first(double along, std::optional<JobStation> next = {}) const {
+    const JobFrame lies = frame();
+    const JobMap of_level = map();
+    LookTask task{lies, settings, of_level, dug, seen, usual_looks(), {along, 0.0, 0.0, 0.0}};
+    task.may_stay = 0.005;
+    task.most = 3;
+    task.next = std::move(next);
+    return best_lookout(task);
+  }
+
   Terrain dug = ground;
   Eigen::ArrayXXd seen;
 };
+
+TEST(Lookout, OfSeveralTheFirstIsOnTheShortestWay) {
+  const HiddenCorner job(9.2);  // the far end hides more
+  const auto from_near = job.first(-4.0);
+  ASSERT_TRUE(from_near);
+  EXPECT_LT(from_near->along, 5.0);
+  const auto from_far = job.first(14.0);
+  ASSERT_TRUE(from_far);
+  EXPECT_GT(from_far->along, 5.0);
+}
+
+TEST(Lookout, WhatIsDugNextNeedsNoLook) {
+  HiddenCorner job(9.2);
+  const JobStation beyond = stations_beyond(job.frame(), job.settings).front();
+  const auto of_corner = job.first(-4.0, beyond);
+  ASSERT_TRUE(of_corner);
+  for_each_cell(job.seen, [&](Cell at) {
+    if (job.ground.bank.x(at.col) < 5.0) job.seen(at.row, at.col) = 0.0;
+  });
+  EXPECT_FALSE(job.first(-4.0, beyond));
+  EXPECT_TRUE(job.first(-4.0));
+}
 
 TEST(Lookout, IsBesideTheDesignOffTheSpoil) {
   HiddenCorner job;  // the windrow is on the left
@@ -709,30 +743,6 @@ TEST(Lookout, IsNoneIfNothingIsHidden) {
   HiddenCorner job;
   job.seen.setZero();
   EXPECT_FALSE(job.best(usual_looks()));
-}
-
-TEST(Lookout, AScanTellsWhereItsSensorIsAndWhatItSees) {
-  const BasePose base = {3.0, -2.0, 0.4, 0.7};
-  const Eigen::Rotation2Dd turn(base.heading);
-  auto cloud = std::make_shared<Cloud>();
-  const Eigen::Vector2d eye = Eigen::Vector2d(base.x, base.y) + turn * Eigen::Vector2d(0.6, 0.7);
-  cloud->sensor_origin = Eigen::Vector3d(eye.x(), eye.y(), base.z + 3.0);
-  for (double azimuth = -1.2; azimuth <= 0.2; azimuth += 0.01) {
-    for (double range = 4.0; range <= 10.0; range += 0.1) {
-      const double at = base.heading + azimuth;
-      cloud->points.emplace_back(eye.x() + range * std::cos(at), eye.y() + range * std::sin(at),
-                                 base.z);
-    }
-  }
-  Scan scan;
-  scan.clouds = {cloud, std::make_shared<Cloud>()};
-  const auto looks = looks_of(scan, base);
-  ASSERT_EQ(looks.size(), 1U);
-  EXPECT_LT((looks[0].from - Eigen::Vector3d(0.6, 0.7, 3.0)).norm(), 1e-9);
-  EXPECT_NEAR(looks[0].azimuth, -0.5, 0.02);
-  EXPECT_NEAR(looks[0].half_sector, 0.7, 0.03);
-  EXPECT_NEAR(looks[0].range, 10.0, 0.2);
-  EXPECT_NEAR(looks[0].steepest, std::atan2(3.0, 4.0), 0.02);
 }
 
 TEST(DumpPlace, IsInTheAreaAndAwayFromTheTrench) {
