@@ -342,21 +342,21 @@ DugVolumes volumes_of(const DensityEstimate& estimate) {
   return dig;
 }
 
-DensityInSoil density_in(const DensityLaw& given, const SoilKind* soil, const DugVolumes& dig,
+DensityInSoil density_in(const DensityLaw& law, const SoilKind* soil, const DugVolumes& dig,
                          const DensityOptions& options) {
-  DensityLaw law = given;
-  if (dig.fallback) law.form = law.freed_form;
+  DensityLaw used = law;
+  if (dig.fallback) used.form = used.freed_form;
   Measured k = dig.corrected();
   const bool known_error = !std::isnan(k.sd);
   if (!known_error) k.sd = 0.0;
   RawDensity answer;
   RelativeDensity& density = answer.found.density;
-  density = relative_density(law, k);
-  answer.sd = std::hypot(density.sd_given_law_percent, residual_sd_at(law.form, density.percent));
-  answer.found.evidence = density_slope(law.form, k.value);
+  density = relative_density(used, k);
+  answer.sd = std::hypot(density.sd_given_law_percent, residual_sd_at(used.form, density.percent));
+  answer.found.evidence = density_slope(used.form, k.value);
   if (!known_error) density.sd_given_law_percent = k.sd = std::nan("");
   if (soil && options.payload_mass && known_error) {
-    PayloadReader(law, *soil, dig, options).join(answer);
+    PayloadReader(used, *soil, dig, options).join(answer);
   }
   const double sd = std::max(answer.sd, 1e-6);
   answer.found.evidence *=

@@ -49,25 +49,25 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const D
   return plan_motion(machine, level_swing_ground(machine), plan, way, motion);
 }
 
-std::optional<Warning> check_dump_place(const Machine& filed, const Terrain& ground,
+std::optional<Warning> check_dump_place(const Machine& machine, const Terrain& ground,
                                         const DigPlan& plan, const CycleOptions& cycle) {
-  const Machine machine = with_attitude(filed, plan.attitude);
+  const Machine stands = with_attitude(machine, plan.attitude);
   require_terrain(ground, "ground of the dump place");
-  if (!plan.dig || !machine.swing || plan.path.poses.empty()) return std::nullopt;
+  if (!plan.dig || !stands.swing || plan.path.poses.empty()) return std::nullopt;
   const JointAngles clear = plan.path.poses.back().joints;
-  const double height = std::max(cycle.dump_height, pin_height(machine, clear));
-  const JointAngles full = raised(machine, clear, height);
+  const double height = std::max(cycle.dump_height, pin_height(stands, clear));
+  const JointAngles full = raised(stands, clear, height);
   double near = std::numeric_limits<double>::infinity(), far = -near;
-  for (const JointAngles& joints : {full, opened(machine, full)}) {
-    const LinkPositions links = link_positions(machine, joints);
-    for (const Eigen::Vector2d& corner : machine.bucket.profile) {
+  for (const JointAngles& joints : {full, opened(stands, full)}) {
+    const LinkPositions links = link_positions(stands, joints);
+    for (const Eigen::Vector2d& corner : stands.bucket.profile) {
       const double x = bucket_point(links, corner).x();
       near = std::min(near, x);
       far = std::max(far, x);
     }
   }
   const Eigen::Vector2d ahead(std::cos(cycle.swing), std::sin(cycle.swing));
-  const double half = 0.5 * machine.bucket.width_outside;
+  const double half = 0.5 * stands.bucket.width_outside;
   const auto below_bucket = [&](const Eigen::Vector2d& place) {
     const double along = place.dot(ahead);
     const double aside = ahead.x() * place.y() - ahead.y() * place.x();

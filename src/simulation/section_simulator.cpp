@@ -154,14 +154,16 @@ class SectionDig {
     const double before = contents_;
     contents_ += (area.swollen + from_pile) * width();
     pile_.level = wedge_length;
-    spill(lip, falls, before);
+    spill(ground, lip, before);
     pile_at_ = q.x();
     const double shed = section_.shed(pile_at_, {pile_.level, pile_.height(falls), falls}, repose_);
     pile_.area = std::max(0.0, pile_.area - shed);
   }
 
   /// Leaves as much soil ahead as lets the rest find room in the bucket.
-  void spill(double lip, double falls, double before) {
+  /// @param before  what the bucket held before the cut [m^3]
+  void spill(const GroundAhead& ground, double lip, double before) {
+    const double falls = fall(ground);
     const auto left_over = [&](double spilled) {
       const double height = Pile{pile_.area + spilled / width(), pile_.level}.height(falls);
       const double support = std::max(0.0, height - lip);
