@@ -190,7 +190,7 @@ ScanNews JobGround::take_in(const SiteEvent& scanned) {
   hold_steep(settings_.site.soil, scanned_.terrain);
   begin_at_scan();
   if (!update.taken) return {};
-  return {cut_above(expected, before.terrain, scanned_.terrain), 0.0, update.alignment};
+  return {cut_above(expected, before.terrain, scanned_.terrain), 0.0, update.alignment, true};
 }
 
 /// The site takes what changed little for noise, and the mean of many scans hardly follows it: what
@@ -208,7 +208,7 @@ ScanNews JobGround::take_in_noisy(const SiteEvent& event, const SiteUpdate& upda
     Terrain alone = expected_;
     alone.bank.z = heights.z - expected_.loose;
     news = {cut_above(expected_, before, alone), event.options.change.sensor_pattern_sd,
-            update.alignment};
+            update.alignment, true};
     fuse(heights, scanned_.terrain, scanned_.deviation);
     scanned_.seen = heights.z.isNaN().select(scanned_.seen, event.time).eval();
   }

@@ -29,6 +29,7 @@ struct ScanNews {
   std::optional<double> cut_off;
   double cut_sd = 0.0;                 ///< of that, by what the scan's points share [m]
   std::optional<Alignment> alignment;  ///< SiteUpdate
+  bool taken = false;                  ///< likewise
 };
 
 /// A dig of a job to its end: where the soil as told would stall it, in one as much softer as lets

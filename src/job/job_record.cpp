@@ -246,6 +246,7 @@ Json record_json(const JobRecord& record) {
   if (record.is_sent_again) json["sent_again"] = true;
   if (record.moves_to_dump > 0) json["moves_to_dump"] = record.moves_to_dump;
   if (record.lacks_dump) json["lacks_dump"] = true;
+  if (record.scans_not_taken > 0) json["scans_not_taken"] = record.scans_not_taken;
   if (record.carried) json["carried"] = carried_json(*record.carried);
   if (record.present) json["present"] = step_json(*record.present);
   if (record.planned) json["planned"] = planned_json(*record.planned);
@@ -291,6 +292,8 @@ JobRecord read_record(const std::string& path) {
   if (object.has("sent_again")) record.is_sent_again = object.flag("sent_again");
   if (object.has("moves_to_dump"))
     record.moves_to_dump = static_cast<int>(object.number("moves_to_dump", 0, 1e9));
+  if (object.has("scans_not_taken"))
+    record.scans_not_taken = static_cast<int>(object.number("scans_not_taken", 0, 1e9));
   if (object.has("lacks_dump")) record.lacks_dump = object.flag("lacks_dump");
   if (object.has("carried")) record.carried = read_carried(object.object("carried"));
   if (object.has("present")) record.present = read_step(object.object("present"));

@@ -38,6 +38,7 @@ struct JobRecord {
   double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall
   bool has_arrived = false;           ///< at its present station
   bool wants_scan = false;            ///< after a stall
+  int scans_not_taken = 0;            ///< in succession
   int passes_here = 0;                ///< along the floor from this station
   int bench = 0;                      ///< layer of a wide design that is dug from this station
   int fruitless_digs = 0;             ///< digs for volume in succession that lifted little

@@ -62,6 +62,7 @@ constexpr double most_off = 0.042;           // share of cells that may stay so,
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double surely_in_shape = 0.9;      // share of what is allowed, of a wide design
+constexpr int most_not_taken = 3;            // scans in succession, before the job ends
 constexpr double well_seen = 0.9905;         // of it, so that no more is looked for
 constexpr int most_blocked = 4;   // digs from one place whose way is blocked, before it is left
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
@@ -563,6 +564,15 @@ JobStep SiteJob::State::decide() {
     const auto place = next_place(progress());
     return place ? move_step(*place) : leave();
   }
+  if (record.scans_not_taken >= most_not_taken) {
+    return step_of(JobAction::stop, "the ground cannot be seen: the last " +
+                                        std::to_string(record.scans_not_taken) +
+                                        " scans do not fit it where it did not change");
+  }
+  if (record.scans_not_taken > 0) {
+    return step_of(JobAction::scan,
+                   "the last scan does not fit the ground where that did not change");
+  }
   if (record.wants_scan) return step_of(JobAction::scan, "to see the ground as it is");
   if (stations[record.station].is_lookout()) return leave();
   if (ground.unseen_digs() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
@@ -696,7 +706,8 @@ void SiteJob::State::take_scan(const StepReport& report) {
     record.learning.datum.learn(*news.alignment);
     hang_design();
   }
-  record.wants_scan = false;
+  record.scans_not_taken = news.taken ? 0 : record.scans_not_taken + 1;
+  record.wants_scan = !news.taken;
   record.site_updates = ground.site().updates();
   ground.save(++record.grounds);
   ++record.progress.scans;

@@ -143,13 +143,37 @@ TEST(SiteJob, AScanThatIsRefusedChangesNothing) {
   EXPECT_GT(job.next().id, step.id);
 }
 
-TEST(SiteJob, AScanThatWasNotTakenIsTakenBack) {
-  BegunJob begun(3);
-  Scan scan = begun.of.truth.scan();
+/// Of other ground.
+Scan wavy(Scan scan, double height) {
   auto cloud = std::make_shared<Cloud>(*scan.clouds.front());
   for (Eigen::Vector3d& point : cloud->points)
-    point.z() += std::sin(1.5 * point.x()) * std::cos(1.5 * point.y());
+    point.z() += height * std::sin(1.5 * point.x()) * std::cos(1.5 * point.y());
   scan.clouds = {cloud};
+  return scan;
+}
+
+TEST(SiteJob, DoesNotDigOnWhileScansAreNotTaken) {
+  BegunJob begun(3);
+  SiteJob& job = begun.job;
+  ASSERT_EQ(job.next().what, JobAction::dig);
+  const double time = begun.of.truth.time();
+  job.look(wavy(begun.of.truth.scan(), 1.0), time + 1.0);
+  EXPECT_EQ(job.next().what, JobAction::scan);
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  EXPECT_EQ(job.next().what, JobAction::scan);
+  job.look(wavy(begun.of.truth.scan(), 1.1), time + 2.0);
+  EXPECT_EQ(job.next().what, JobAction::scan);
+  job.look(wavy(begun.of.truth.scan(), 1.2), time + 3.0);
+  EXPECT_EQ(job.next().what, JobAction::stop);
+  EXPECT_NE(job.next().reason.find("do not fit"), std::string::npos);
+  job.look(begun.of.truth.scan(), time + 4.0);
+  EXPECT_EQ(job.next().what, JobAction::dig);
+}
+
+TEST(SiteJob, AScanThatWasNotTakenIsTakenBack) {
+  BegunJob begun(3);
+  const Scan scan = wavy(begun.of.truth.scan(), 1.0);
   const double left = begun.job.progress().left_volume;
   begun.job.look(scan, begun.of.truth.time() + 1.0);
   const auto& warnings = begun.job.scan_warnings();
