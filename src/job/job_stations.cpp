@@ -325,6 +325,11 @@ JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine&
   return station;
 }
 
+double volume_lane_step(const JobFrame& frame) {
+  return frame.faces_across > least_across ? batter_step * static_cast<double>(passes_of_lane)
+                                           : 0.0;
+}
+
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,
                  const Machine& machine) {
   const Eigen::Vector2d place = frame.place(station.along, station.beside);

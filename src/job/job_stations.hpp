@@ -111,6 +111,10 @@ std::vector<WorkLine> work_lines(const JobFrame& frame, const JobStation& statio
 JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine& below,
                     const Machine& machine);
 
+/// Between lanes for volume that run along faces of the design, so that they leave steps; 0 where
+/// none do [m].
+double volume_lane_step(const JobFrame& frame);
+
 /// A machine at a station, on the mean height of the ground under its tracks.
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,
                  const Machine& machine);

@@ -17,6 +17,7 @@
 #include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "design/design_walls.hpp"
+#include "ground/slopes.hpp"
 #include "job/dump_place.hpp"
 #include "job/job_ground.hpp"
 #include "job/job_log.hpp"
@@ -51,6 +52,7 @@ constexpr double far_end = 0.8;              // that may slope until it is dug f
 constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
 constexpr int most_moves_to_dump = 3;        // from one station, in succession without a dig
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
+constexpr double thin_bench = 0.15;          // likewise where its sides are faces along the lanes
 constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
 constexpr double most_undug = 0.3;           // share of such cells where passes pay
 constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
@@ -102,6 +104,9 @@ struct SiteJob::State {
     map = map_of(settings, first.bank);
     design = map.target.z;
     frame = work_frame(settings, map, first);
+    const Gradient slope = gradient_of(map.target);
+    const Eigen::ArrayXXd rise = (slope.x.square() + slope.y.square()).sqrt();
+    steps = volume_lane_step(frame) * rise.isNaN().select(0.0, rise);
     const std::vector<JobStation> beyond = places_beyond();
     stations = stations_of(frame, settings);
     if (is_one_group(stations)) {
@@ -253,6 +258,7 @@ struct SiteJob::State {
   JobMap map;
   Eigen::ArrayXXd design;  ///< JobMap::target as told
   JobFrame frame;
+  Eigen::ArrayXXd steps;  ///< heights of those that lanes for volume leave of faces [m]
   std::vector<JobStation> stations;
   bool can_leave_end = false;  ///< to a place beyond
   JobRecord record;
@@ -302,7 +308,8 @@ std::vector<double> SiteJob::State::benches_below() const {
     if (!std::isnan(z)) top = std::max(top, z);
     low = std::min(low, map.target.z(cell.row, cell.col));
   });
-  const int count = static_cast<int>(std::round((top - low) / bench_height));
+  const double height = volume_lane_step(frame) > 0.0 ? thin_bench : bench_height;
+  const int count = static_cast<int>(std::round((top - low) / height));
   for (int i = 1; i < count; ++i) benches.push_back(top - (top - low) * i / count);
   return benches;
 }
@@ -519,13 +526,15 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
   return high + low > most_off * count || heaps > most_heaps * count;
 }
 
-/// Whether little of what is within reach still stands.
+/// Whether little of what is within reach still stands, but for the steps of a face that lanes for
+/// volume leave.
 bool SiteJob::State::is_dug_out(const BasePose& base) const {
   int count = 0;
   int high = 0;
   for_each_in_reach(base, [&](Cell cell) {
     ++count;
-    if (above_design(map, ground.expected(), cell) > undug * settings.design.tolerance) ++high;
+    const double most = undug * settings.design.tolerance + steps(cell.row, cell.col);
+    if (above_design(map, ground.expected(), cell) > most) ++high;
   });
   return high <= most_undug * count;
 }

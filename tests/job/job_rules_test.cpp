@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -50,11 +51,17 @@ class PitJob {
 
   /// A scan shows the pit as deep as that; the ground beside it is level.
   void dig(const std::function<double(double, double)>& height) {
+    see([&](double x, double y) {
+      return x > 2.0 && x < 6.0 && std::abs(y) < half_ ? height(x, y) : 0.0;
+    });
+  }
+
+  /// A scan shows the ground as high as that.
+  void see(const std::function<double(double, double)>& height) {
     auto cloud = std::make_shared<Cloud>();
     for (double x = -7.975; x < 10.0; x += 0.05) {
       for (double y = -6.975; y < 7.0; y += 0.05) {
-        const bool is_in = x > 2.0 && x < 6.0 && std::abs(y) < half_;
-        cloud->points.emplace_back(x, y, is_in ? height(x, y) : 0.0);
+        cloud->points.emplace_back(x, y, height(x, y));
       }
     }
     Scan scan;
@@ -113,6 +120,37 @@ TEST(JobRules, ATrenchWhoseWallsLeanBackTakesAsMany) {
   };
   EXPECT_EQ(after_passes(PitJob(narrow, 0.4, lean), 0, 15), JobAction::finish);
   EXPECT_NE(after_passes(PitJob(narrow, 0.4, lean), 0, 16), JobAction::finish);
+}
+
+/// A trench with walls that lean back so far that its top is wide.
+PitJob battered_trench() {
+  return PitJob(narrow, 0.55, [](PlainSiteFolder& of) {
+    of.site["design"]["wall_horizontal_per_vertical"] = 1.73;
+  });
+}
+
+TEST(JobRules, ATrenchWithFacesBesideIsDugInThinLayers) {
+  PitJob trench = battered_trench();
+  ASSERT_TRUE(trench.stations.front().is_wide);
+  trench.stand_at(0);
+  const JobStep dig = trench.next();
+  ASSERT_EQ(dig.what, JobAction::dig);
+  double lowest = 0.0;
+  for (const DigPose& pose : dig.path.poses) lowest = std::min(lowest, pose.bucket.z);
+  EXPECT_GT(lowest, -0.3);
+  EXPECT_LT(lowest, -0.05);
+}
+
+TEST(JobRules, PassesBeginWhereLanesForVolumeLeaveStepsOfAFace) {
+  PitJob trench = battered_trench();
+  ASSERT_TRUE(trench.stations.at(4).is_again);
+  trench.see([](double x, double y) {
+    if (x < 2.0 || x > 6.0) return 0.0;
+    const double face = (std::abs(y) - 0.5 * narrow) / 1.73;
+    return face < 0.0 ? -0.55 : std::min(0.0, -0.55 + face + 0.2);
+  });
+  trench.stand_at(4, [](JobRecord& record) { record.fruitless_digs = no_more; });
+  EXPECT_EQ(trench.next().what, JobAction::finish);
 }
 
 /// What comes after the last place before the far end is dug from beyond, where a strip there is
