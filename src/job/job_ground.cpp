@@ -11,8 +11,8 @@
 
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
-#include "job/noisy_scan.hpp"
 #include "job/step_search.hpp"
+#include "scans/noisy_scan.hpp"
 #include "site/site_survey.hpp"
 
 namespace excavplan {

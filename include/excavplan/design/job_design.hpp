@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <excavplan/clouds/sensor_errors.hpp>
 #include <excavplan/design/design_words.hpp>
 #include <excavplan/machine/base_pose.hpp>
 
@@ -47,13 +48,6 @@ struct JobTruck {
   SitePolygon bed;           ///< in plan [m]
   double bed_height = 0.0;   ///< of its upper edge over the ground [m], > 0
   double target_mass = 0.0;  ///< of a load [kg], > 0
-};
-
-/// What is stated of the errors of a sensor's ranges.
-struct SensorErrors {
-  double own = 0.0;          ///< sd at 1 m, of each return by itself [m], >= 0
-  double shared = 0.0;       ///< sd at 1 m of what neighbouring returns share [m], >= 0
-  double range_power = 0.0;  ///< both grow with the range to this power, in 0 .. 4
 };
 
 /// A job as its description says it.

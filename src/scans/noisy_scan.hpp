@@ -4,12 +4,12 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/design/job_design.hpp>
+#include <excavplan/clouds/sensor_errors.hpp>
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
 /// @file
-/// Scans whose stated errors are no small part of a job's tolerance. Private to the project.
+/// Scans whose stated errors are no small part of a tolerance. Private to the project.
 
 namespace excavplan {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "job/noisy_scan.hpp"
+#include "scans/noisy_scan.hpp"
 
 #include <algorithm>
 #include <cmath>
