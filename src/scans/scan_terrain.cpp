@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/map_check.hpp"
 #include "scans/scan_agreement.hpp"
 #include "scans/scan_checks.hpp"
 #include "scans/scan_obstacles.hpp"
@@ -28,6 +29,7 @@ namespace {
 constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;
 constexpr std::size_t fewest_points = 10;  // that make a ground; ours
+constexpr double narrowest = 1e-3;         // that makes a ground; ours [m]
 
 // Of ground that nothing may hit [m]; ours: a wall may stand between points that are further apart.
 constexpr double motion_cell = 0.25, motion_farthest = 0.5;
@@ -71,6 +73,17 @@ void require_width(const Scan& scan, const Rectangle& seen) {
   constexpr double dense = std::numeric_limits<double>::infinity();
   const auto narrow = doubt_of_extent(seen, dense, scan.unit);
   if (narrow) throw FrameError(name_of(scan) + ": " + narrow->message);
+  if (std::min(seen.x_max - seen.x_min, seen.y_max - seen.y_min) >= narrowest) return;
+  throw FrameError(name_of(scan) + ": the points within the machine's reach lie on a line, " +
+                   text(seen) + ", must spread over " + readable(narrowest) +
+                   " m or more in both directions");
+}
+
+void require_heights(const Scan& scan, const HeightMap& map) {
+  const double farthest = map.z.isNaN().select(0.0, map.z.abs()).maxCoeff();
+  if (farthest <= farthest_height) return;
+  throw FrameError(name_of(scan) + ": a height of the ground is " + readable(farthest) +
+                   " m from 0, must be at most " + readable(farthest_height) + " m");
 }
 
 void require_points(const Scan& scan, std::size_t points, const Rectangle& extent) {
@@ -152,7 +165,9 @@ double cell_of(const Seen& seen) { return std::sqrt(2.0 / seen.density); }
 Surface surface_of(const Seen& seen, double raster_cell) {
   RasterOptions raster;
   raster.cell_size = raster_cell;
-  return survey_surface(seen.near, seen.extent, raster);
+  Surface surface = survey_surface(seen.near, seen.extent, raster);
+  require_heights(seen.near, surface.height);
+  return surface;
 }
 
 /// Code `two_surfaces` for ground but not for what stands on it, which is an obstacle.

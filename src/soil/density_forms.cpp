@@ -96,13 +96,14 @@ void for_each_alternative(const std::variant<Forms...>&, const Visitor& visit) {
 // ---- Fits ---------------------------------------------------------------------------------------
 
 void check_samples(const std::vector<BulkingSample>& samples) {
+  constexpr double largest = 1000.0;  // ours: above any percentage, and its square is finite
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto [k, d] = samples[i];
-    if (!(k > 0.0 && std::isfinite(k)) || !(d >= 0.0 && d <= 100.0)) {
-      throw Error(ErrorKind::bad_input,
-                  "sample " + std::to_string(i + 1) + ": bulking factor " + number_text(k) +
-                      " at " + number_text(d) +
-                      " %; the factor must be positive and the density in 0 .. 100 %");
+    if (!(k > 0.0 && k <= largest) || !(d >= 0.0 && d <= 100.0)) {
+      throw Error(ErrorKind::bad_input, "sample " + std::to_string(i + 1) + ": bulking factor " +
+                                            number_text(k) + " at " + number_text(d) +
+                                            " %; the factor must be above 0 and at most " +
+                                            number_text(largest) + ", the density in 0 .. 100 %");
     }
   }
   constexpr double most_bulking = 5.0;  // ours; blocks give about 2

@@ -309,5 +309,31 @@ TEST(ScanTerrain, ScanElsewhereIsRefused) {
             "terrain from a scan: cell_size is 0, must be > 0 m and finite");
 }
 
+TEST(ScanTerrain, PointsOnALineAreRefusedWithTheirName) {
+  Scan scan = slope(2000.0);
+  scan.name = "line.xyz";
+  Cloud line = *scan.clouds.front();
+  for (Eigen::Vector3d& point : line.points) point.y() = 0.25;
+  scan.clouds = {std::make_shared<const Cloud>(line)};
+  const auto refused = [&](auto read) { return test::error_of(read, ErrorKind::bad_file); };
+  const std::string error = refused([&] { terrain_from_scan(scan, extent, 0.05); });
+  EXPECT_EQ(error.find("line.xyz: the points within the machine's reach lie on a line, x = "), 0u)
+      << error;
+  EXPECT_NE(error.find("must spread over 0.00100 m or more"), std::string::npos) << error;
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  EXPECT_NE(refused([&] { swing_terrain_from_scan(scan, machine); }).find("lie on a line"),
+            std::string::npos);
+}
+
+TEST(ScanTerrain, HeightsThatCannotBeAreRefusedWithTheirName) {
+  Scan scan = slope(2000.0);
+  scan.name = "high.xyz";
+  Cloud high = *scan.clouds.front();
+  for (Eigen::Vector3d& point : high.points) point.z() = 2e6;
+  scan.clouds = {std::make_shared<const Cloud>(high)};
+  EXPECT_EQ(test::error_of([&] { terrain_from_scan(scan, extent, 0.05); }, ErrorKind::bad_file),
+            "high.xyz: a height of the ground is 2000000 m from 0, must be at most 1000000 m");
+}
+
 }  // namespace
 }  // namespace excavplan

@@ -103,8 +103,10 @@ TEST(DensityFit, SamplesThatCannotFitAreRefused) {
   EXPECT_NE(message_of(falling, true).find("must grow with density"), std::string::npos);
   EXPECT_NE(message_of(falling, false).find("must grow with density"), std::string::npos);
   EXPECT_EQ(message_of({{1.0, 0.0}, {-1.0, 20.0}, {1.2, 30.0}}, true),
-            "sample 2: bulking factor -1 at 20 %; the factor must be positive and the density in "
-            "0 .. 100 %");
+            "sample 2: bulking factor -1 at 20 %; the factor must be above 0 and at most 1000, the "
+            "density in 0 .. 100 %");
+  EXPECT_NE(message_of({{1.0, 0.0}, {1e300, 50.0}, {1e308, 100.0}}, true).find("factor 1e+300 at"),
+            std::string::npos);
   EXPECT_NE(message_of({{1.0, 0.0}, {1.1, 101.0}}, false).find("at 101 %"), std::string::npos);
   EXPECT_NE(message_of({{std::nan(""), 0.0}}, true).find("sample 1"), std::string::npos);
 }
