@@ -32,17 +32,14 @@ std::vector<Cell> widened(const std::vector<Cell>& cells, const Eigen::ArrayXXd&
   Eigen::ArrayXXi taken = Eigen::ArrayXXi::Zero(grid.rows(), grid.cols());
   std::vector<Cell> wide;
   for (const Cell from : cells) {
-    for (Eigen::Index c = from.col - reach; c <= from.col + reach; ++c) {
-      for (Eigen::Index r = from.row - reach; r <= from.row + reach; ++r) {
-        if (r < 0 || c < 0 || r >= grid.rows() || c >= grid.cols() || taken(r, c) != 0) continue;
-        if (std::hypot(static_cast<double>(r - from.row), static_cast<double>(c - from.col)) >
-            std::max(margin, 1.5)) {
-          continue;
-        }
-        taken(r, c) = 1;
-        wide.push_back({r, c});
-      }
-    }
+    for_each_around(grid, from, reach, [&](Cell at) {
+      const auto rows = static_cast<double>(at.row - from.row);
+      const auto cols = static_cast<double>(at.col - from.col);
+      int& is_taken = taken(at.row, at.col);
+      if (is_taken != 0 || std::hypot(rows, cols) > std::max(margin, 1.5)) return;
+      is_taken = 1;
+      wide.push_back(at);
+    });
   }
   return wide;
 }

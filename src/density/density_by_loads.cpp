@@ -60,10 +60,10 @@ SoilKind drawn_strength(const SoilKind& soil, const StrengthScatter& scatter, st
       std::min(most_cohesion, soil.cohesion_loosest * factor(scatter.cohesion));
   drawn.adhesion_ratio = std::min(1.0, soil.adhesion_ratio * factor(scatter.adhesion_ratio));
   const double densest = soil.friction_loosest + soil.friction_gain;
+  const auto [flattest, steepest] = std::minmax(soil.friction_loosest, densest);
   const double friction =
-      std::clamp(factor(scatter.friction),
-                 flattest_friction / (within * std::min(soil.friction_loosest, densest)),
-                 within * steepest_friction / std::max(soil.friction_loosest, densest));
+      std::clamp(factor(scatter.friction), std::min(1.0, flattest_friction / (within * flattest)),
+                 std::max(1.0, within * steepest_friction / steepest));
   drawn.friction_loosest *= friction;
   drawn.friction_gain *= friction;
   drawn.cone_index_reference = std::clamp(soil.cone_index_reference * factor(scatter.cone_index),

@@ -177,7 +177,7 @@ class Aligner {
     constexpr double enough = 0.1;    // ours: of the samples
     constexpr double changed = 0.15;  // ours: more than slopes that are shifted by 0.2 m [m]
     constexpr double around = 0.6;    // ours [m]
-    if (!options_.left_out) return;
+    if (!options_.left_out || samples_.size() < fewest_cells) return;
     std::vector<double> changes;
     for (const Sample& sample : samples_) changes.push_back(sample.change);
     const double usual = half_sample_mode(std::move(changes));
@@ -234,8 +234,10 @@ class Aligner {
     }
     const double noise = scale_ * scale_ / (24.0 * map_.cell_size * map_.cell_size);
     constexpr double margin = 1.2;  // ours
-    const Eigen::Vector2d share =
-        (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
+    Eigen::Vector2d share(0.0, 0.0);
+    if (weights > 0.0) {
+      share = (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
+    }
     reliable_ = {std::sqrt(share.x()),       std::sqrt(share.y()), 1.0, 1.0, 1.0,
                  std::sqrt(share.maxCoeff())};
     if (!lateral_) reliable_[0] = reliable_[1] = reliable_[5] = 0.0;

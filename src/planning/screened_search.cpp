@@ -43,7 +43,7 @@ Eigen::ArrayXXd means(const Eigen::ArrayXXd& layer, int cells, const Weight& wei
           most = std::max(most, layer(r, c));
         }
       }
-      coarse(row, col) = weights > 0.0 ? std::clamp(sum / weights, least, most)
+      coarse(row, col) = least <= most ? std::clamp(sum / weights, least, most)
                                        : std::numeric_limits<double>::quiet_NaN();
     }
   }

@@ -46,7 +46,9 @@ constexpr std::array side_names = {"ahead", "left", "behind", "right"};
 class Tracks {
  public:
   explicit Tracks(const Machine& machine)
-      : front_(machine.track_front), half_(0.5 * machine.undercarriage_width()) {}
+      : front_(std::max(0.0, machine.track_front)), half_(0.5 * machine.undercarriage_width()) {}
+
+  double length() const { return 2.0 * front_; }  // [m]
 
   /// 0 under the machine [m].
   double distance(double x, double y) const { return (Vector2d(x, y) - nearest(x, y)).norm(); }
@@ -169,7 +171,7 @@ class Judgement {
         if (tracks_.is_on(static_cast<Side>(i), x, y)) known[i] += 1.0;
       }
     });
-    const double length = 2.0 * machine_.track_front, width = machine_.undercarriage_width();
+    const double length = tracks_.length(), width = machine_.undercarriage_width();
     for (std::size_t i = 0; i < 4; ++i) {
       const double whole = ring * (i % 2 == 0 ? width : length);
       seen_[i] = known[i] * area() >= least_seen * whole;

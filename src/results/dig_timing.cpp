@@ -69,6 +69,7 @@ std::vector<double> times_of_poses(const Trajectory& trajectory,
 
 std::vector<TimedStep> timed_steps(const Machine& machine, const DigPath& path,
                                    const DigResult& dig) {
+  if (dig.history.empty()) return {};
   const std::vector<DigPose>& poses = path.poses;
   DigPath alone = path;
   alone.approach.clear();

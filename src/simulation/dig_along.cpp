@@ -29,6 +29,7 @@ constexpr double room_along = 1.5;   // of a path, for the pile ahead and soil t
 constexpr double room_beside = 1.5;  // of the bucket, likewise [m]
 constexpr double unchanged = 1e-12;  // less is no change of a layer [m]
 constexpr int sweeps_of_a_heap = 2000;
+constexpr double largest_heap = 1e6;  // ours [m^3]
 constexpr int places_a_side = 3;
 constexpr std::size_t most_places = 9;
 
@@ -321,11 +322,9 @@ GroundAlong::GroundAlong(const Terrain& site, DigLine line, const Rectangle& ext
       along_(seen_along(checked(site), line_, flat_ground(extent, cell_size))) {}
 
 void GroundAlong::enter(const Terrain& site, const SoilVoids& voids, DigResult& dig) const {
-  const TerrainPatch& patch = dig.patch;
-  const bool fits = patch.bank.size() > 0 && patch.row >= 0 && patch.col >= 0 &&
-                    patch.row + patch.bank.rows() <= along_.bank.z.rows() &&
-                    patch.col + patch.bank.cols() <= along_.bank.z.cols();
-  require(fits, "ground along a line: the patch of the dig is not of this ground");
+  require_terrain(site, "ground along a line");
+  require(dig.patch.bank.size() > 0, "ground along a line: the dig has no patch");
+  require_patch(dig.patch, along_);
   Entry(site, line_, along_, voids).run(dig);
 }
 
@@ -353,8 +352,8 @@ DigResult dig_along(const SoilSimulator& simulator, const Machine& machine, cons
 
 void heap_soil(Terrain& site, const SoilKind& soil, double density_percent, const Vector2d& place,
                double volume) {
-  require(volume >= 0.0 && std::isfinite(volume), "volume of a heap [m^3]", volume,
-          "at least 0 and finite");
+  require_terrain(site, "heap of soil");
+  require_in("volume of a heap [m^3]", volume, 0.0, largest_heap);
   const SoilState bank = bank_state(soil, density_percent);
   const SoilState loose = loose_state(soil);
   const auto at = cell_at(site.bank, place.x(), place.y());

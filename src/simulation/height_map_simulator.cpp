@@ -285,6 +285,8 @@ class Dig {
   /// The bucket leaves the ground where it has come to, in the attitude of its last pose: what no
   /// soil ahead supports any more falls off, no wall is held any more.
   void come_clear(const BucketPose& at, const DigPose& last) {
+    const Index ahead = swath_.nearest_column(at.x - ground_.cell_size());
+    ground_.cover({swath_.first_row(), swath_.end_row(), ahead, ahead + 1});
     const HoldingSlopes slopes = turn_clear(last);
     pile_.move_to(at.x, 0.0);
     spill(level_ahead({at.x, at.z}), [&](double) { return cavity_.capacity(0.0, slopes); });

@@ -31,6 +31,14 @@ TEST(Objects, WhatStandsHigherThanSoilCanIsAnObjectInEitherScan) {
   }
 }
 
+TEST(Objects, AMarginMayBeWiderThanTheGround) {
+  Eigen::ArrayXXd before = with_step(0.0);
+  Eigen::ArrayXXd after = with_step(1.2);
+  const std::vector<Object> objects = take_out_objects(before, after, cell, 1e12);
+  ASSERT_EQ(objects.size(), 1u);
+  EXPECT_EQ(objects[0].cells.size(), 3600u);
+}
+
 /// It stands 1.2 m above the floor beside it, and more than soil can in the change, but did not
 /// rise; nor did it sink where such a pit was filled.
 TEST(Objects, GroundAtTheRimOfAnUprightPitIsNoObject) {

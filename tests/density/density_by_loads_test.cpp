@@ -171,8 +171,11 @@ TEST_F(DensityByLoads, ADrawnSoilIsASoil) {
   SoilKind soft = loam_;
   soft.friction_loosest = 0.01;
   soft.cone_index_reference = 1.0;
+  SoilKind of_all_angles = loam_;
+  of_all_angles.friction_loosest = 0.01;
+  of_all_angles.friction_gain = 1.04;
   const StrengthScatter wide = {1.0, 1.0, 1.0, 1.0, 0.2};
-  for (const SoilKind& kind : {hard, soft, loam_}) {
+  for (const SoilKind& kind : {hard, soft, of_all_angles, loam_}) {
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
       EXPECT_NO_THROW(require_soil(drawn_strength(kind, wide, seed)));
     }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -271,6 +272,21 @@ TEST(Align, HeapsOfKnownGroundThatNobodyTouchedShowAShift) {
   }
 }
 
+TEST(Align, GroundOfWhichNoCellIsAsItWasShowsNoMotion) {
+  Surface before;
+  before.height = flat_ground({0, 0, 6, 6}, 0.1);
+  Surface after = before;
+  const std::array<double, 3> furrows = {0.0, 0.17, 0.07};  // where level, their slope is not
+  for (Eigen::Index col = 0; col < after.height.z.cols(); ++col) {
+    after.height.z.col(col) = furrows[static_cast<std::size_t>(col % 3)];
+  }
+  const Alignment found = align(before, after);
+  EXPECT_TRUE(found.motion.isZero());
+  EXPECT_EQ(found.stable_share, 0.0);
+  EXPECT_LT(found.residual_sd, 1.0);
+  EXPECT_TRUE(found.left.allFinite());
+}
+
 TEST(Align, RealignedMapsAgreeOnStableGround) {
   const Ground ground(rough_ground(), 7);
   const Surface before = surface_of(ground, Eigen::Isometry3d::Identity(), 0.0, 1);
@@ -310,6 +326,9 @@ TEST(Align, SurfacesThatDoNotFitAreRefused) {
   EXPECT_EQ(message(one, unseen),
             "the surfaces share 0 known cells with known neighbours and no steep gradient, "
             "at least 100 are needed: do they overlap, with points enough for cells of 0.10 m?");
+  AlignmentOptions of_known_ground;
+  of_known_ground.left_out = Rectangle{0.0, 0.0, 1.0, 1.0};
+  EXPECT_EQ(message(one, unseen, of_known_ground), message(one, unseen));
   AlignmentOptions options;
   options.turn_prior = 0.0;
   EXPECT_EQ(message(one, one, options), "align: turn_prior is 0, must be positive and finite");

@@ -70,6 +70,17 @@ TEST(CoarserGround, HoldsAsMuchSoil) {
   EXPECT_THROW(coarser(ground, 0), Error);
 }
 
+TEST(CoarserGround, DoesNotKnowWhatNoCellTells) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  Terrain ground = undisturbed(flat_ground({0.0, 0.0, 0.4, 0.4}, 0.1));
+  ground.bank_void_ratio.setConstant(4, 4, unknown);
+  ground.loose_void_ratio.setConstant(4, 4, unknown);
+  const Terrain coarse = coarser(ground, 2);
+  EXPECT_TRUE(coarse.bank_void_ratio.isNaN().all());
+  EXPECT_TRUE(coarse.loose_void_ratio.isNaN().all());
+  EXPECT_TRUE((coarse.bank.z == 0.0).all());
+}
+
 // The mean of equal values of different weight may round to a value above all of them, which the
 // simulator would refuse as looser than the loosest.
 TEST(CoarserGround, KeepsAStateThatIsTheSameEverywhere) {

@@ -328,5 +328,14 @@ TEST(StandingGround, SaysWhichGroundItDoesNotKnow) {
       << "a slope that begins ahead of the tracks";
 }
 
+TEST(StandingGround, TracksMayEndBehindTheSwingAxis) {
+  Machine machine = zx120();
+  machine.track_front = -0.5;
+  if (machine.body) machine.body->front_edge = -0.5;
+  const StandingGround found = standing_ground(machine, map_of([](double, double) { return 0.4; }));
+  ASSERT_FALSE(found.warnings.empty());
+  EXPECT_EQ(found.warnings[0].code, WarningCode::ground_above_tracks);
+}
+
 }  // namespace
 }  // namespace excavplan::test

@@ -59,6 +59,14 @@ TEST(Results, ForceHistoryHasARowPerStep) {
             static_cast<std::ptrdiff_t>(scene().dig.history.size() + 1));
 }
 
+TEST(Results, ForceHistoryOfALiftAloneHasNoRow) {
+  DigScene lift = scene();
+  for (DigPose& pose : lift.path.poses) pose.phase = DigPhase::lift;
+  lift.dig.history.clear();
+  const std::string csv = force_history_csv(zx120(), lift);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1);
+}
+
 TEST(Results, OfAnEstimateAreReadAgain) {
   DensityEstimate estimate;
   estimate.bulking = Measured{1.2, 0.01};

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -134,13 +135,36 @@ TEST(DigAlong, HeapedSoilKeepsItsVolume) {
 TEST(DigAlong, APatchOfOtherGroundIsRefused) {
   const Terrain site = ringed_site();
   const GroundAlong along(site, {}, {3.0, -1.0, 4.0, 1.0}, 0.05);
-  DigResult dig;
-  dig.patch.row = 100;
-  dig.patch.bank = dig.patch.loose = Eigen::ArrayXXd::Zero(3, 3);
-  EXPECT_NE(error_of([&] {
-              along.enter(site, soil_voids(loam(), 50.0), dig);
-            }).find("not of this ground"),
-            std::string::npos);
+  const auto message = [&](const Terrain& of, TerrainPatch patch) {
+    DigResult dig;
+    dig.patch = std::move(patch);
+    return error_of([&] { along.enter(of, soil_voids(loam(), 50.0), dig); });
+  };
+  TerrainPatch patch;
+  EXPECT_EQ(message(site, patch), "ground along a line: the dig has no patch");
+  patch.bank = patch.loose = Eigen::ArrayXXd::Zero(3, 3);
+  EXPECT_EQ(message(site, patch), "no error");
+  EXPECT_EQ(message({}, patch), "ground along a line: the map is empty");
+  TerrainPatch outside = patch;
+  outside.row = 100;
+  EXPECT_EQ(message(site, outside),
+            "patch: 3 x 3 cells from (100, 0) on, all layers alike, must lie on the terrain of "
+            "40 x 20");
+  TerrainPatch unlike = patch;
+  unlike.loose.resize(1, 1);
+  EXPECT_EQ(message(site, unlike),
+            "patch: 3 x 3 cells from (0, 0) on, all layers alike, must lie on the terrain of "
+            "40 x 20");
+}
+
+TEST(DigAlong, AHeapIsOfAVolumeThatCanBe) {
+  Terrain site = undisturbed(flat_ground({0.0, 0.0, 2.0, 2.0}, 0.1));
+  const auto message = [](Terrain& on, double volume) {
+    return error_of([&] { heap_soil(on, loam(), 50.0, {1.0, 1.0}, volume); });
+  };
+  EXPECT_EQ(message(site, 1e300), "volume of a heap [m^3] is 1e+300, must be in 0 .. 1000000");
+  site.loose.resize(1, 1);
+  EXPECT_EQ(message(site, 0.1), "heap of soil: the loose layer must be as large as the map");
 }
 
 }  // namespace

@@ -307,6 +307,16 @@ TEST_F(Simulator, UnsettledGroundIsStillSliding) {
   EXPECT_EQ(unsettled.payload_mass, settled.payload_mass);
 }
 
+TEST_F(Simulator, ALiftMayEndFarFromWhereItBegan) {
+  const Terrain ground = level_planning_ground(machine_);
+  auto path = std::get<DigPath>(
+      make_dig_path_anywhere(machine_, paper_fixed_path(), boom_plane_profile(ground.surface())));
+  for (DigPose& pose : path.poses) pose.phase = DigPhase::lift;
+  const DigResult lifted = HeightMapSimulator(machine_, soil_kind("loam"), 40.0).dig(ground, path);
+  EXPECT_EQ(lifted.payload_mass, 0.0);
+  EXPECT_TRUE((lifted.after(ground).surface().z == 0.0).all());
+}
+
 // A density in the ground gives the same dig as the same density of the simulator.
 TEST_F(Simulator, DensityOfTheCellsCountsLikeTheSimulatorsOwn) {
   const SoilKind loam = soil_kind("loam");

@@ -57,7 +57,7 @@ class GroundAlong {
   /// soil that the view lost, payload and soil that came to lie are scaled by the ratio: solids are
   /// kept to rounding.
   /// @param site  on which the object was made
-  /// @throws Error (bad_input) if the patch of the dig is not of terrain()
+  /// @throws Error (bad_input) as require_terrain(), or if the dig has no patch of terrain()
   void enter(const Terrain& site, const SoilVoids& voids, DigResult& dig) const;
 
  private:
@@ -81,8 +81,9 @@ DigResult dig_along(const SoilSimulator& simulator, const Machine& machine, cons
                     const LineDig& dig, const DigOptions& options = {});
 
 /// Heaps loose soil on the ground, a cone that slides until it is at rest.
-/// @param volume  as it lies loose [m^3], >= 0
-/// @throws Error (bad_input) if the place is unknown ground or off the map
+/// @param volume  as it lies loose [m^3], 0 .. 1e6
+/// @throws Error (bad_input) if the place is unknown ground or off the map, or the volume out of
+///         range
 void heap_soil(Terrain& site, const SoilKind& soil, double density_percent,
                const Eigen::Vector2d& place, double volume);
 
