@@ -129,8 +129,9 @@ class Lookout {
     JobStation first = looks.front();
     double shortest = std::numeric_limits<double>::infinity();
     do {
-      std::vector<JobStation> way;
-      for (const std::size_t i : order) way.push_back(looks[i]);
+      std::vector<JobStation> way(looks.size());
+      std::transform(order.begin(), order.end(), way.begin(),
+                     [&](std::size_t i) { return looks[i]; });
       const double length = way_over(way);
       if (!(length < shortest)) continue;
       shortest = length;
