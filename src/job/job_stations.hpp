@@ -36,6 +36,11 @@ struct JobStation {
   bool is_lookout() const { return lanes.empty(); }  ///< it only scans from there
 };
 
+/// The line along which a station is told: the line of work, or the same from its other end.
+inline JobFrame line_of(const JobFrame& frame, const JobStation& station) {
+  return station.is_beyond ? reversed(frame) : frame;
+}
+
 /// The line of work that the faces of a design ask for: a bucket's edge is level across, so that a
 /// drag along a face leaves steps. Along the heading of the start, or at right angles to it if that
 /// makes most of the faces and the machine can stand and dump everywhere.

@@ -94,12 +94,9 @@ class Lookout {
   bool is_dug_next(const Vector3d& at) const {
     if (!task_.next) return false;
     const JobStation& next = *task_.next;
-    const JobFrame line = line_of(next);
+    const JobFrame line = line_of(task_.frame, next);
     const WorkRange range = work_range(line, task_.settings.site.machine, next.along, next.is_wide);
     return line.of(at.head<2>()).x() <= next.along + range.far;
-  }
-  JobFrame line_of(const JobStation& station) const {
-    return station.is_beyond ? reversed(task_.frame) : task_.frame;
   }
 
   double share(const std::vector<Vector3d>& cells) const {
@@ -145,7 +142,7 @@ class Lookout {
     Vector2d from(task_.base.x, task_.base.y);
     double length = 0.0;
     const auto go = [&](const JobStation& place) {
-      const Vector2d to = line_of(place).place(place.along, place.beside);
+      const Vector2d to = line_of(task_.frame, place).place(place.along, place.beside);
       length += (to - std::exchange(from, to)).norm();
     };
     std::for_each(places.begin(), places.end(), go);

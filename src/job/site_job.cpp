@@ -138,9 +138,7 @@ struct SiteJob::State {
     map.target.z = raised(design, map.target, record.learning.datum.plane());
   }
 
-  JobFrame frame_at(const JobStation& station) const {
-    return station.is_beyond ? reversed(frame) : frame;
-  }
+  JobFrame frame_at(const JobStation& station) const { return line_of(frame, station); }
 
   /// The present station. Where the soil has proved hard the far end is left to a place beyond:
   /// steep cuts down its wall stall.
@@ -716,7 +714,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
     hang_design();
   }
   record.scans_not_taken = news.taken ? 0 : record.scans_not_taken + 1;
-  record.wants_scan = !news.taken;
+  record.wants_scan = false;
   record.site_updates = ground.site().updates();
   ground.save(++record.grounds);
   ++record.progress.scans;

@@ -309,12 +309,18 @@ TEST(ScanTerrain, ScanElsewhereIsRefused) {
             "terrain from a scan: cell_size is 0, must be > 0 m and finite");
 }
 
-TEST(ScanTerrain, PointsOnALineAreRefusedWithTheirName) {
+/// The slope with one coordinate of all its points changed.
+Scan slope_with(const std::string& name, Eigen::Index axis, double value) {
   Scan scan = slope(2000.0);
-  scan.name = "line.xyz";
-  Cloud line = *scan.clouds.front();
-  for (Eigen::Vector3d& point : line.points) point.y() = 0.25;
-  scan.clouds = {std::make_shared<const Cloud>(line)};
+  scan.name = name;
+  Cloud cloud = *scan.clouds.front();
+  for (Eigen::Vector3d& point : cloud.points) point[axis] = value;
+  scan.clouds = {std::make_shared<const Cloud>(cloud)};
+  return scan;
+}
+
+TEST(ScanTerrain, PointsOnALineAreRefusedWithTheirName) {
+  const Scan scan = slope_with("line.xyz", 1, 0.25);
   const auto refused = [&](auto read) { return test::error_of(read, ErrorKind::bad_file); };
   const std::string error = refused([&] { terrain_from_scan(scan, extent, 0.05); });
   EXPECT_EQ(error.find("line.xyz: the points within the machine's reach lie on a line, x = "), 0u)
@@ -326,11 +332,7 @@ TEST(ScanTerrain, PointsOnALineAreRefusedWithTheirName) {
 }
 
 TEST(ScanTerrain, HeightsThatCannotBeAreRefusedWithTheirName) {
-  Scan scan = slope(2000.0);
-  scan.name = "high.xyz";
-  Cloud high = *scan.clouds.front();
-  for (Eigen::Vector3d& point : high.points) point.z() = 2e6;
-  scan.clouds = {std::make_shared<const Cloud>(high)};
+  const Scan scan = slope_with("high.xyz", 2, 2e6);
   EXPECT_EQ(test::error_of([&] { terrain_from_scan(scan, extent, 0.05); }, ErrorKind::bad_file),
             "high.xyz: a height of the ground is 2000000 m from 0, must be at most 1000000 m");
 }
