@@ -8,7 +8,7 @@
 
 #include "base/check.hpp"
 #include "ground/grid_cells.hpp"
-#include "job/cell_codes.hpp"
+#include "site/cell_codes.hpp"
 
 namespace excavplan {
 namespace {

@@ -12,8 +12,8 @@
 #include "base/input_file.hpp"
 #include "base/json.hpp"
 #include "ground/grid_cells.hpp"
-#include "job/cell_codes.hpp"
 #include "job/step_json.hpp"
+#include "site/cell_codes.hpp"
 
 namespace excavplan {
 namespace {

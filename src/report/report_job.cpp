@@ -11,8 +11,8 @@
 #include "drawing/drawing.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
-#include "job/cell_codes.hpp"
 #include "report/report_parts.hpp"
+#include "site/cell_codes.hpp"
 
 namespace excavplan {
 namespace {

@@ -30,7 +30,7 @@ struct ReportJob {
 };
 
 /// For data/report/app: the ground where something is or happened, in codes of millimetres
-/// (src/job/cell_codes.hpp), and of each step what it changed of it. More than 250000 cells are
+/// (src/site/cell_codes.hpp), and of each step what it changed of it. More than 250000 cells are
 /// coarsened.
 nlohmann::ordered_json to_json(const ReportJob& job);
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <sstream>
 
-#include "job/cell_codes.hpp"
 #include "job/trench_job.hpp"
+#include "site/cell_codes.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::test {

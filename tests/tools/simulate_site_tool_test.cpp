@@ -8,7 +8,7 @@
 
 #include <excavplan/ground/ascii_grid.hpp>
 
-#include "job/cell_codes.hpp"
+#include "site/cell_codes.hpp"
 #include "support/plain_site_folder.hpp"
 #include "support/report_page.hpp"
 #include "support/tool_answers.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "job/cell_codes.hpp"
+#include "site/cell_codes.hpp"
 
 #include <algorithm>
 #include <cmath>
