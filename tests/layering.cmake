@@ -46,7 +46,7 @@ set(drawing_may_use ground machine)
 set(figures_may_use
   ground change soil machine simulation sensing planning kit density job efficiency experiments results drawing)
 set(report_may_use
-  ground change machine simulation sensing planning density job trial results drawing figures)
+  ground change machine simulation sensing planning density site job trial results drawing figures)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density site
   job results)
 
