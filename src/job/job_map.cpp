@@ -54,25 +54,39 @@ Mask counting(const HeightMap& target, double edge_margin) {
   return highest_within(left_out, margin) < 0.5;
 }
 
-/// Share of what counts that is a face which a dig along the heading does not make by itself; those
-/// that rise along it count if `is_any`.
-double share_of_faces(const JobMap& map, double heading, bool is_any) {
+/// Whether a cell that counts is of a face which a dig along the heading does not make by itself;
+/// those that rise along it count if `is_any`.
+bool is_face(const HeightMap& target, Cell at, double heading, bool is_any) {
+  const auto& z = target.z;
+  if (on_border(z, at)) return false;
   const Vector2d aside(-std::sin(heading), std::cos(heading));
-  const double flattest = std::tan(flattest_face);
-  const HeightMap& target = map.target;
+  const Vector2d slope = Vector2d(z(at.row, at.col + 1) - z(at.row, at.col - 1),
+                                  z(at.row + 1, at.col) - z(at.row - 1, at.col)) /
+                         (2.0 * target.cell_size);
+  return (is_any ? slope.norm() : std::abs(slope.dot(aside))) > std::tan(flattest_face);
+}
+
+/// Share of such cells.
+double share_of_faces(const JobMap& map, double heading, bool is_any) {
   int faces = 0;
   int count = 0;
-  for_each_cell(target.z, [&](Cell at) {
+  for_each_cell(map.counts, [&](Cell at) {
     if (!map.counts(at.row, at.col)) return;
     ++count;
-    const auto& z = target.z;
-    if (on_border(z, at)) return;
-    const Vector2d slope = Vector2d(z(at.row, at.col + 1) - z(at.row, at.col - 1),
-                                    z(at.row + 1, at.col) - z(at.row - 1, at.col)) /
-                           (2.0 * target.cell_size);
-    if ((is_any ? slope.norm() : std::abs(slope.dot(aside))) > flattest) ++faces;
+    if (is_face(map.target, at, heading, is_any)) ++faces;
   });
   return count > 0 ? static_cast<double>(faces) / count : 0.0;
+}
+
+/// Of the cells that count and are no face.
+AcrossLine floor_of(const JobMap& map, const JobFrame& frame) {
+  Eigen::AlignedBox1d box;
+  for_each_cell(map.counts, [&](Cell at) {
+    if (map.counts(at.row, at.col) && !is_face(map.target, at, frame.heading, true))
+      box.extend(frame.of({map.target.x(at.col), map.target.y(at.row)}).tail<1>());
+  });
+  if (box.isEmpty()) return {frame.right, frame.left};
+  return {box.min()(0), box.max()(0)};
 }
 
 /// A bucket's lane does not reach into walls that are too steep to count: only its floor has lanes.
@@ -197,6 +211,7 @@ JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned)
   keep_to_floor(map, settings.design.edge_margin + half, frame);
   frame.is_battered = share_of_faces(map, frame.heading, true) > least_faces;
   frame.faces_across = share_of_faces(map, frame.heading, false);
+  frame.floor = floor_of(map, frame);
   return frame;
 }
 
@@ -218,6 +233,7 @@ JobFrame reversed(const JobFrame& frame) {
   back.far = -frame.near;
   back.right = -frame.left;
   back.left = -frame.right;
+  back.floor = {-frame.floor.left, -frame.floor.right};
   return back;
 }
 

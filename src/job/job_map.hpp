@@ -57,6 +57,12 @@ JobProgress measured(JobProgress progress, const JobMap& map, const MeasuredGrou
 Eigen::ArrayXXd raised(const Eigen::ArrayXXd& design, const HeightMap& grid,
                        const Eigen::Vector3d& over);
 
+/// How far beside a line a part of the design reaches [m].
+struct AcrossLine {
+  double right = 0.0;
+  double left = 0.0;
+};
+
 /// Where the design lies along the machine's line of work.
 struct JobFrame {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of the line [m]
@@ -67,6 +73,7 @@ struct JobFrame {
   double left = 0.0;          ///< likewise [m]
   bool is_battered = false;   ///< some of the design is neither floor nor wall
   double faces_across = 0.0;  ///< share of what counts of the design that rises across the line
+  AcrossLine floor;           ///< of what counts and is no face
 
   Eigen::Vector2d place(double along, double beside) const;
   Eigen::Vector2d of(const Eigen::Vector2d& place) const;  ///< along and beside
@@ -74,11 +81,6 @@ struct JobFrame {
 
 /// Along the heading in which the machine starts, or turned from it [rad]: it works backwards.
 JobFrame frame_of(const JobSettings& settings, const JobMap& map, double turned = 0.0);
-/// How far beside a line a part of the design reaches [m].
-struct AcrossLine {
-  double right;
-  double left;
-};
 /// Of the part that lies below a height of the site [m].
 AcrossLine across_below(const JobMap& map, const JobFrame& frame, double height);
 /// The same line from its other end.

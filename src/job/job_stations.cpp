@@ -40,8 +40,10 @@ constexpr double widest_at_wall = 1.0;     // likewise of its passes: a bucket t
 constexpr double widest_straight = 1.1;    // of both, at most, where no machine is exact [m]
 constexpr double least_wider = 0.05;       // of a bench than the floor, to dig along its side [m]
 constexpr double least_of_benches = 2.0;   // between the outermost lanes [m]
-constexpr double off_wall = 0.05;          // of passes beside it [m]
-constexpr double fan_step = 0.1;           // between planes through the swing axis [rad]
+constexpr std::ptrdiff_t lanes_of_foot = 3;  // of the other face, that the last side passes too
+constexpr double onto_face = 0.05;           // of a lane that does not lean yet [m]
+constexpr double off_wall = 0.05;            // of passes beside it [m]
+constexpr double fan_step = 0.1;             // between planes through the swing axis [rad]
 
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
@@ -98,11 +100,31 @@ bool wants_benches(const JobFrame& frame, const std::vector<double>& lanes) {
   return !runs_on_faces && lanes.back() - lanes.front() > least_of_benches;
 }
 
+/// Whether the right side of a bucket in a lane cuts along a face, and the left one does not.
+bool leans_right(const JobFrame& frame, double bucket_width, double lane) {
+  return frame.faces_across > least_across &&
+         lane - 0.5 * bucket_width < frame.floor.right - onto_face;
+}
+
+/// Lanes that passes are made in from one place: first those that lean to the right, if the others
+/// can all be reached from one place, with the lowest of the first, whose soil is dug from there.
+std::vector<std::vector<double>> sides_of(const JobFrame& frame, double bucket_width,
+                                          const std::vector<double>& lanes) {
+  auto sides = groups_within(widest_at_wall, lanes);
+  const auto other = std::find_if_not(lanes.begin(), lanes.end(), [&](double lane) {
+    return leans_right(frame, bucket_width, lane);
+  });
+  if (sides.size() != 2 || other == lanes.begin() || other == lanes.end()) return sides;
+  const auto from = other - std::min(other - lanes.begin(), lanes_of_foot);
+  if (lanes.back() - *from > 2.0 * widest_at_wall) return sides;
+  return {{lanes.begin(), other}, {from, lanes.end()}};
+}
+
 /// From the middle of a wide group its soil is dug evenly; walls and floor are cut from nearer to
-/// each side.
-void add_wide(const JobFrame& frame, double along, const std::vector<double>& lanes,
-              std::vector<JobStation>& stations) {
-  const auto sides = groups_within(widest_at_wall, lanes);
+/// each side. The soil that falls off the faces of one side is left to the other one.
+void add_wide(const JobFrame& frame, double bucket_width, double along,
+              const std::vector<double>& lanes, std::vector<JobStation>& stations) {
+  const auto sides = sides_of(frame, bucket_width, lanes);
   stations.push_back(station_at(frame, along, lanes));
   stations.back().is_wide = true;
   stations.back().leaves_passes = sides.size() > 1;
@@ -111,6 +133,7 @@ void add_wide(const JobFrame& frame, double along, const std::vector<double>& la
     stations.push_back(station_at(frame, along, side));
     stations.back().is_wide = true;
     stations.back().is_again = true;
+    stations.back().leaves_floor = leans_right(frame, bucket_width, side.back());
   }
 }
 
@@ -240,7 +263,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
       const std::size_t first_of_group = stations.size();
       if (is_wide)
-        add_wide(frame, along, lanes, stations);
+        add_wide(frame, machine.bucket.width_outside, along, lanes, stations);
       else
         stations.push_back(station_at(frame, along, lanes));
       stations[first_of_group].has_others_beside = groups.size() > 1;
@@ -260,7 +283,7 @@ std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings
   std::vector<JobStation> stations;
   if (wants_benches(frame, lanes_of_all)) {
     for (const auto& lanes : groups_within(widest_for_volume, lanes_of_all))
-      add_wide(back, along, lanes, stations);
+      add_wide(back, machine.bucket.width_outside, along, lanes, stations);
   } else {
     for (const auto& lanes : groups_of(lanes_of_all))
       stations.push_back(station_at(back, along, lanes));

@@ -30,6 +30,7 @@ struct JobStation {
   bool is_beyond = false;           ///< the far end: all of it is along the reversed() line
   bool is_again = false;            ///< only if the shape of what it reaches is not right
   bool leaves_passes = false;       ///< to the places after it
+  bool leaves_floor = false;        ///< likewise all but passes along faces
   double shapes_from = -1e9;        ///< along the line; what is nearer, later places shape [m]
   double shapes_to = 1e9;           ///< likewise; what is farther, a place beyond the end does [m]
 

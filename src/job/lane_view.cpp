@@ -77,9 +77,16 @@ void LaneView::look_under_bucket(double bucket_width) {
   const auto inner = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
   floor_ = ground_at_ = top_ = ArrayXd::Zero(columns());
   std::vector<double> heights;
+  double falls = 0.0;
+  int known_falls = 0;
   for (Index col = 0; col < columns(); ++col) {
     double floor = -infinity, edge = -infinity;
     heights.clear();
+    const auto under = target_.col(col).segment(first_row_, end_row_ - first_row_);
+    if (!under.isNaN().any()) {
+      falls += under.maxCoeff() - under.minCoeff();
+      ++known_falls;
+    }
     for (Index row = first_row_; row < end_row_; ++row) {
       const double z = surface_.z(row, col);
       const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
@@ -98,6 +105,7 @@ void LaneView::look_under_bucket(double bucket_width) {
     top_(col) = is_known ? mean_of(heights, std::max<Index>(1, known / top_part)) : nan;
     floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
   }
+  if (known_falls > 0) fall_ = falls / known_falls;
 }
 
 void LaneView::keep_above(double level) {
@@ -161,11 +169,12 @@ ShapeChange LaneView::change(const TerrainPatch& patch, const ShapeRules& rules)
     const double gained = area * (std::max(0.0, before - target) - std::max(0.0, after - target));
     change.gained += gained;
     if (surface_.x(cell.col) > rules.end) change.at_end += gained;
+    const bool is_later = floor_(cell.col) - target > rules.deepest;
     const bool is_under = cell.row >= first_row_ && cell.row < end_row_;
     const double level = target + slack;
     const double lowered = area * (std::max(0.0, before - level) - std::max(0.0, after - level));
-    if (!is_under) change.pushed -= lowered;
-    if (is_under && counts_(cell.row, cell.col)) {
+    if (!is_under && !is_later) change.pushed -= lowered;
+    if (is_under && !is_later && counts_(cell.row, cell.col)) {
       change.cleared += lowered;
       const auto is_off = [&](double z) { return std::abs(z - target) > rules.tolerance; };
       change.finished += area * (is_off(before) - is_off(after));

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 
 #include <excavplan/simulation/dig_along.hpp>
@@ -38,6 +40,8 @@ struct ShapeRules {
   double slack = 0.0;      ///< so far from the design ground is not too deep or out of shape [m]
   double tolerance = 0.0;  ///< of the design [m]
   double end = 0.0;        ///< from here on the work ends, along the line [m]
+  /// What the design lies deeper below the floor of the lane is of lanes that come later [m].
+  double deepest = std::numeric_limits<double>::infinity();
 };
 
 /// What a machine sees along a line: heights are those of its path.
@@ -51,6 +55,8 @@ class LaneView {
 
   /// Nothing is cut below that level, as if the design were no deeper [m].
   void keep_above(double level);
+  /// Mean fall of the design from one side of the bucket to the other [m].
+  double fall() const { return fall_; }
   /// The highest of the design under the bucket; beside the design the ground. So much higher [m].
   GroundProfile floor(double allowance) const;
   /// Of the ground under the bucket, without the strips at its edges, which it may miss: its
@@ -81,6 +87,7 @@ class LaneView {
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
   Eigen::ArrayXd floor_, ground_at_, top_;
+  double fall_ = 0.0;
 };
 
 }  // namespace excavplan

@@ -33,8 +33,9 @@ namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
-constexpr std::size_t most_unseen = 5;         // digs between two scans
-constexpr std::size_t most_unseen_passes = 2;  // likewise of passes
+constexpr std::size_t most_unseen = 5;           // digs between two scans
+constexpr std::size_t most_unseen_passes = 2;    // likewise of passes
+constexpr std::size_t most_unseen_on_steps = 4;  // likewise along faces, each in its lane
 constexpr double allowance = 0.5;       // over the design, in tolerances: what is too deep stays so
 constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
 constexpr double most_allowance = 0.8;  // of passes to that end, likewise
@@ -44,7 +45,9 @@ constexpr double most_of_floor = 0.5;        // in tolerances: else passes did n
 constexpr std::size_t least_of_floor = 100;  // cells that tell it
 constexpr int most_passes = 8;               // along the floor from one station
 constexpr int most_passes_of_shape = 16;     // likewise of a wide design, or one with faces
+constexpr int most_passes_of_steps = 30;     // likewise where lanes along faces leave steps
 constexpr int most_fruitless = 4;            // passes in succession that took nothing off
+constexpr int most_fruitless_on_steps = 16;  // likewise: what they cut falls aside
 constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
 constexpr int rounds_of_ends = 2;            // of a wide design, after each was dug from once
@@ -56,6 +59,8 @@ constexpr double thin_bench = 0.15;          // likewise where its sides are fac
 constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
 constexpr double most_undug = 0.3;           // share of such cells where passes pay
 constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
+constexpr double least_again = 0.04;         // of a pass along a face, to come back for more [m^3]
+constexpr double empty_bucket = 0.006;       // less is not worth a dump [m^3]
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
@@ -83,6 +88,9 @@ bool is_one_group(const std::vector<JobStation>& stations) {
     return each.beside == stations.front().beside;
   });
 }
+
+/// What a dig is for.
+enum class Work { volume, faces, shape };
 
 /// A scan that tells the ground alone.
 SiteEvent event_of(const Scan& scan, double time, const BasePose& base) {
@@ -122,7 +130,8 @@ struct SiteJob::State {
       std::copy_if(stations.begin(), stations.end(), std::back_inserter(near),
                    [&](const JobStation& each) { return each.along == last.along; });
       for (JobStation& each : near) each.is_again = true;
-      for (int round = 0; round < rounds_of_ends; ++round) {
+      const int rounds = has_steps() ? 0 : rounds_of_ends;
+      for (int round = 0; round < rounds; ++round) {
         ends.insert(ends.end(), near.begin(), near.end());
         ends.insert(ends.end(), beyond.begin(), beyond.end());
       }
@@ -179,13 +188,15 @@ struct SiteJob::State {
 
   void begin(const Scan& scan, double time);
   JobStep decide();
-  std::optional<JobStep> dig_step(bool finishing);
-  std::optional<JobStep> best_step(bool finishing);
+  std::optional<JobStep> dig_step(Work work);
+  std::optional<JobStep> best_step(Work work);
+  bool has_steps() const { return volume_lane_step(frame) > 0.0; }
+  bool may_pass() const;
   void lay_aside(const JobStep& dig);
   std::vector<double> benches_below() const;
   std::vector<WorkLine> lines_on(double bench, const BasePose& straight) const;
   std::optional<StepDig> best_dig_of(StepTask& task, const std::vector<double>& benches);
-  StepTask task_of(bool finishing, const DumpPlace& dump, const BasePose& straight) const;
+  StepTask task_of(Work work, const DumpPlace& dump, const BasePose& straight) const;
   JobStep move_step(const JobStation& station);
   JobStep leave();
   JobStep go_to(const JobStation& place);
@@ -221,9 +232,14 @@ struct SiteJob::State {
   }
   bool may_keep(double more) const;
   int most_passes_here() const {
+    if (has_steps()) return most_passes_of_steps;
     const bool has_shape_to_cut = frame.is_battered || stations[record.station].is_wide;
     return has_shape_to_cut ? most_passes_of_shape : most_passes;
   }
+  std::size_t most_unseen_passes_here() const {
+    return has_steps() ? most_unseen_on_steps : most_unseen_passes;
+  }
+  int most_fruitless_here() const { return has_steps() ? most_fruitless_on_steps : most_fruitless; }
   std::optional<JobStep> dump_step();
   JobStep step_of(JobAction what, const std::string& reason = {});
   void end_step(const StepReport& report);
@@ -274,8 +290,8 @@ JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
 }
 
 /// @param straight  the machine as it looks along the design
-StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
-                                 const BasePose& straight) const {
+StepTask SiteJob::State::task_of(Work work, const DumpPlace& dump, const BasePose& straight) const {
+  const bool finishing = work != Work::volume;
   const JobFrame line = frame_at(stations[record.station]);
   const Eigen::Vector2d at = line.of({straight.x, straight.y});
   StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
@@ -285,6 +301,8 @@ StepTask SiteJob::State::task_of(bool finishing, const DumpPlace& dump,
   task.finishing = finishing;
   task.has_others_beside = stations[record.station].has_others_beside;
   task.has_faces = frame.is_battered;
+  task.has_steps = has_steps();
+  task.leaves_floor = work == Work::faces;
   task.keeps_load = finishing && may_keep(0.0);
   task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
   task.density_percent = settings.density_percent;
@@ -343,15 +361,19 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
 
 /// What would be driven into something is laid aside for another dig from here, and so is what is
 /// not to be trusted, if there is another one.
-std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
+std::optional<JobStep> SiteJob::State::dig_step(Work work) {
   std::optional<JobStep> first_doubtful;
   JobRecord with_it;
   int doubtful = 0;
   for (int tries = 0; tries < most_blocked && doubtful < most_doubtful; ++tries) {
-    auto step = best_step(finishing);
+    auto step = best_step(work);
     if (!step) break;
     const bool is_blocked = !step->reason.empty();
-    if (step->trustworthy && !is_blocked) return step;
+    if (step->trustworthy && !is_blocked) {
+      // What falls down from a lane is dug from the one below it.
+      if (work == Work::faces && record.planned->payload_volume < least_again) lay_aside(*step);
+      return step;
+    }
     if (!is_blocked && doubtful++ == 0) {
       first_doubtful = step;
       with_it = record;
@@ -362,13 +384,14 @@ std::optional<JobStep> SiteJob::State::dig_step(bool finishing) {
   return first_doubtful;
 }
 
-std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
+std::optional<JobStep> SiteJob::State::best_step(Work work) {
+  const bool finishing = work != Work::volume;
   const auto dump = dump_place(settings, map, ground.expected(), record.base, {0.0, true});
   if (!dump) return std::nullopt;
   BasePose straight = record.base;
   straight.heading = frame_at(stations[record.station]).heading;
   straight.z += record.learning.height_bias.mean;
-  StepTask task = task_of(finishing, *dump, straight);
+  StepTask task = task_of(work, *dump, straight);
   const std::vector<double> benches = finishing ? std::vector<double>() : benches_below();
   auto dig = best_dig_of(task, benches);
   for (int softer = 1; !dig && !finishing && softer <= most_softer; ++softer) {
@@ -385,8 +408,9 @@ std::optional<JobStep> SiteJob::State::best_step(bool finishing) {
   if (dump->in_truck) step.truck = record.trucks;
   step.carried = record.carried;
   step.dumps_first = record.carried && !finishing;
-  step.keeps_load = task.keeps_load && can_hold_load(settings.site.soil, step.path) &&
-                    may_keep(dig->dig.payload_volume);
+  const bool is_empty = !record.carried && dig->dig.payload_volume < empty_bucket;
+  step.keeps_load = task.keeps_load && may_keep(dig->dig.payload_volume) &&
+                    (is_empty || can_hold_load(settings.site.soil, step.path));
   const DumpPlace beside = seen_from(*dump, dig->turned);
   foretell(step, beside, *dig);
   if (!check_motion(step) && step.keeps_load) {
@@ -566,6 +590,14 @@ bool SiteJob::State::stands_well() const {
   return can_stand_now({settings, map, first, ground.expected()}, line, {at.x(), at.y()});
 }
 
+/// Whether passes from here are worth their while.
+bool SiteJob::State::may_pass() const {
+  const JobStation station = here();
+  return !station.leaves_passes && record.passes_here < most_passes_here() &&
+         record.fruitless < most_fruitless_here() && wants_passes(record.base) &&
+         (!station.is_wide || is_dug_out(record.base));
+}
+
 JobStep SiteJob::State::decide() {
   if (!record.has_arrived) {
     const auto place = next_place(progress());
@@ -585,16 +617,19 @@ JobStep SiteJob::State::decide() {
   if (ground.unseen_digs() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   const bool is_wide = stations[record.station].is_wide;
   if (is_wide && !record.carried && !stands_well()) return leave();
-  if (record.fruitless_digs < (is_wide ? most_fruitless_wide : most_fruitless_digs)) {
-    if (auto step = dig_step(false)) return with_walls_checked(*std::move(step));
+  if (has_steps() && may_pass()) {
+    if (auto step = dig_step(Work::faces)) return with_walls_checked(*std::move(step));
+  }
+  const bool leaves_floor = here().leaves_floor;
+  const int most_in_vain = is_wide ? most_fruitless_wide : most_fruitless_digs;
+  if (!leaves_floor && record.fruitless_digs < most_in_vain) {
+    if (auto step = dig_step(Work::volume)) return with_walls_checked(*std::move(step));
   }
   const std::size_t passes = ground.unseen_digs(JobAction::finish);
-  if (ground.unseen_digs() > passes || passes >= most_unseen_passes)
+  if (ground.unseen_digs() > passes || passes >= most_unseen_passes_here())
     return step_of(JobAction::scan, "to see what is left");
-  if (!here().leaves_passes && record.passes_here < most_passes_here() &&
-      record.fruitless < most_fruitless && wants_passes(record.base) &&
-      (!is_wide || is_dug_out(record.base))) {
-    if (auto step = dig_step(true)) return with_walls_checked(*std::move(step));
+  if (!leaves_floor && may_pass()) {
+    if (auto step = dig_step(Work::shape)) return with_walls_checked(*std::move(step));
   }
   if (auto step = dump_step()) return *std::move(step);
   if (passes > 0) return step_of(JobAction::scan, "to see what is left");
@@ -753,7 +788,8 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
                             : record.planned->payload_volume;
   const double held = record.carried ? record.carried->volume : 0.0;
   record.carried.reset();
-  if (step.keeps_load) record.carried = {held + std::max(0.0, volume), record.rests_at};
+  if (step.keeps_load && held + volume > empty_bucket)
+    record.carried = {held + volume, record.rests_at};
   if (step.truck) {
     record.truck_load += lifted;
     if (record.truck_load >= settings.design.truck->target_mass) {

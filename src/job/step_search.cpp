@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -50,6 +51,9 @@ constexpr double pushed_price = 0.5;   // of soil that a pass pushes beside it, 
 constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
 constexpr double same_start = 0.25;    // likewise [m]
 constexpr double same_turn = 0.03;     // likewise [rad]
+constexpr double leaning = 0.1;        // of the design under a bucket that runs along a face [m]
+constexpr double same_floor = 0.02;    // of lanes of which none is above the other [m]
+constexpr double most_below = 2.0;     // of what a lane shapes, in tolerances below its floor
 constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
 constexpr double least_in_hard = 0.07;    // likewise in soil that lets no bucket fill
 constexpr double least_on_bench = 0.3;    // likewise where more is below that can come with it
@@ -126,7 +130,9 @@ struct Lane {
         excess(view.excess(allowance)) {}
 
   /// Soil that stands over the rest of the lane there: a bucket cannot begin within it.
-  bool has_bank_at(double x) const { return ground(x) - mean(x) > standing; }
+  bool has_bank_at(double x) const { return !leans() && ground(x) - mean(x) > standing; }
+  /// Whether it runs along a face, on which one side of the bucket cuts.
+  bool leans() const { return view.fall() > leaning; }
   /// Of a value of each column, over a part of the lane; NaN if none of it is known.
   template <typename Value>
   double mean_over(double from, double to, Value value) const {
@@ -172,6 +178,7 @@ class StepSearch {
     if (!task_.bench) {
       if (auto dig = best_at_wall()) return dig;
     }
+    if (task_.finishing && task_.has_steps) return best_from_top();
     const std::vector<std::size_t> lanes = fullest_first();
     for (std::size_t done = 0; done < lanes.size(); done += most_lanes) {
       const std::vector<std::size_t> some(
@@ -197,6 +204,30 @@ class StepSearch {
     for (const std::size_t lane : lanes) lay_out_in_hard(lane);
     auto bite = best(Aim::hard);
     return bite && (!dig || bite->worth > dig->worth) ? bite : dig;
+  }
+
+  /// In the highest lane in which a pass is worth its cycle: what it cuts falls on those below.
+  std::optional<StepDig> best_from_top() {
+    std::vector<double> floor;
+    for (const Lane& lane : lanes_) {
+      floor.push_back(lane.mean_over(lane.line.near, lane.line.far,
+                                     [&](Index col) { return lane.floor(lane.view.x(col)); }));
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+      if (lanes_[lane].leans() || !task_.leaves_floor) order.push_back(lane);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return floor[a] > floor[b]; });
+    for (std::size_t first = 0; first < order.size();) {
+      std::size_t end = first;
+      while (end < order.size() && !(floor[order[end]] < floor[order[first]] - same_floor)) ++end;
+      if (auto dig = best_in({order.begin() + static_cast<std::ptrdiff_t>(first),
+                              order.begin() + static_cast<std::ptrdiff_t>(end)}))
+        return dig;
+      first = end;
+    }
+    return std::nullopt;
   }
 
   /// The lanes by what is above the design in them, if there are too many to look at all at once.
@@ -355,13 +386,15 @@ class StepSearch {
   /// Along the floor; where a bank stands in the lane by layers from its top, since the bucket
   /// cannot begin within it.
   void lay_out_passes(std::size_t lane) {
-    const GroundProfile& ground = lanes_[lane].mean;
+    const GroundProfile& ground = lanes_[lane].leans() ? lanes_[lane].ground : lanes_[lane].mean;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
     const WorkLine& line = lanes_[lane].line;
     const double last = line.near + least_pass * (line.far - line.near);
+    const std::size_t before = candidates_.size();
     for (double start = line.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
+      if (lanes_[lane].leans() && candidates_.size() > before) break;  // all of it at once
       lay_out_face(lane, start);
       if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
@@ -371,6 +404,7 @@ class StepSearch {
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
+        if (lanes_[lane].leans()) continue;
         const double shorter = drag - (in_shape_before(lanes_[lane], start) - line.near);
         if (shorter > shortest_drag && shorter < drag)
           add(lane, {angle, 1.0, shorter}, start, rules);
@@ -522,8 +556,9 @@ class StepSearch {
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
     const Lane& at = lanes_[lane];
-    if (is_barren(at.line, start)) return;
-    const GroundProfile& ground = task_.finishing && !at.has_bank_at(start) ? at.mean : at.ground;
+    if (is_barren(at, start)) return;
+    const bool is_even = task_.finishing && !at.leans() && !at.has_bank_at(start);
+    const GroundProfile& ground = is_even ? at.mean : at.ground;
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
     auto* made = std::get_if<DigPath>(&path);
     if (made == nullptr || (task_.carried > 0.0 && !can_hold(*made))) return;
@@ -534,11 +569,12 @@ class StepSearch {
     candidates_.push_back({lane, std::move(*made)});
   }
 
-  bool is_barren(const WorkLine& line, double start) const {
+  bool is_barren(const Lane& lane, double start) const {
+    const WorkLine& line = lane.line;
+    const double near = task_.finishing && lane.leans() ? line.far : same_start;
     return std::any_of(task_.barren.begin(), task_.barren.end(), [&](const DigStart& each) {
       return std::abs(each.lane - line.lane) < same_lane &&
-             std::abs(each.turned - line.turned) < same_turn &&
-             std::abs(each.along - start) < same_start;
+             std::abs(each.turned - line.turned) < same_turn && std::abs(each.along - start) < near;
     });
   }
 
@@ -599,7 +635,9 @@ class StepSearch {
     step.dig = found->dig;
     if (task_.carried > 0.0 && step.dig.payload_volume > capacity_) return std::nullopt;
     step.change = view.change(found->result.patch,
-                              {task_.slack, task_.settings.design.tolerance, line.far - wall_from});
+                              {task_.slack, task_.settings.design.tolerance, line.far - wall_from,
+                               task_.has_steps ? most_below * task_.settings.design.tolerance
+                                               : std::numeric_limits<double>::infinity()});
     const double gain = gain_of(step, aim);
     if (step.change.touched > most_touched) return std::nullopt;
     if (!(gain > 0.0) || !is_enough(step, aim)) return std::nullopt;

@@ -35,6 +35,8 @@ struct StepTask {
   bool has_others_beside = false;  ///< soil that leaves its lane for another one is no loss
   bool finishing = false;          ///< along the floor, for its shape
   bool has_faces = false;          ///< some of the design is neither floor nor wall
+  bool has_steps = false;          ///< faces are cut in steps by lanes along them
+  bool leaves_floor = false;       ///< of passes all but those
   bool keeps_load = false;         ///< a load that the bucket can keep is not dumped
   double carried = 0.0;            ///< loose, in the bucket [m^3]
   double allowance = 0.0;          ///< over the design, below which nothing is cut [m]

@@ -432,6 +432,105 @@ TEST(JobStations, PassesAlongAFaceLieCloserThanLanesForVolume) {
   }
 }
 
+/// A trench in line with the machine whose sides lean back.
+HandMadeJob leaning_trench() {
+  HandMadeJob job;
+  DesignWords words;
+  words.length = 10.0;
+  words.floor_width = 1.0;
+  words.depth = 0.6;
+  words.batter = 1.73;
+  job.settings.surface = design_of_words(words, job.ground.bank);
+  return job;
+}
+
+TEST(JobFrame, KnowsItsFloorBetweenFaces) {
+  const HandMadeJob job = leaning_trench();
+  const JobFrame frame = job.frame();
+  EXPECT_NEAR(frame.floor.right, -0.5, 0.08);
+  EXPECT_NEAR(frame.floor.left, 0.5, 0.08);
+  EXPECT_NEAR(frame.left, 1.54, 0.08);
+}
+
+TEST(JobStations, TheFloorBetweenFacesIsShapedFromTheLastSide) {
+  const HandMadeJob job = leaning_trench();
+  const double half = 0.5 * job.settings.site.machine.bucket.width_outside;
+  const auto stations = stations_of(job.frame(), job.settings);
+  ASSERT_EQ(stations.size() % 3, 0U);
+  for (std::size_t i = 0; i < stations.size(); i += 3) {
+    const JobStation &first = stations[i + 1], &last = stations[i + 2];
+    EXPECT_FALSE(stations[i].leaves_floor);
+    EXPECT_TRUE(first.leaves_floor);
+    EXPECT_FALSE(last.leaves_floor);
+    EXPECT_LT(first.passes.back() - half, -0.5);
+    EXPECT_LT(last.passes.front(), first.passes.back() - 0.1) << "the foot of the first face too";
+    EXPECT_GT(last.passes.front() - half, -1.0);
+    EXPECT_EQ(first.passes.front(), stations[i].passes.front());
+    EXPECT_EQ(last.passes.back(), stations[i].passes.back());
+  }
+  const HandMadeJob upright(10.0, 3.6);
+  for (const JobStation& each : stations_of(upright.frame(), upright.settings))
+    EXPECT_FALSE(each.leaves_floor);
+}
+
+TEST(LaneView, APassAlongAFaceShapesWhatItsEdgeComesTo) {
+  const HandMadeJob job = leaning_trench();
+  const JobMap map = job.map();
+  Terrain ground = job.ground;
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    if (!std::isnan(target)) ground.bank.z(at.row, at.col) = std::min(0.0, target + 0.1);
+  });
+  // The right edge of the bucket runs 1 m beside the middle of the trench.
+  const double width = job.settings.site.machine.bucket.width_outside;
+  const LaneView view(ground, map, dig_line({0.0, 0.0, 0.0, 0.0}, 0.0, -1.0 + 0.5 * width),
+                      {-2.0, -2.0, 12.0, 2.0}, width);
+  EXPECT_NEAR(view.fall(), 0.5 / 1.73, 0.07);
+  TerrainPatch patch;
+  const Terrain& seen = view.ground().terrain();
+  patch.bank = seen.bank.z;
+  patch.loose = seen.loose;
+  for_each_cell(patch.bank, [&](Cell at) {
+    const double x = seen.bank.x(at.col), y = seen.bank.y(at.row);
+    if (x < 4.0 || x > 6.0 || std::abs(y) > 0.5 * width) return;
+    (y < 0.1 - 0.5 * width ? patch.bank : patch.loose)(at.row, at.col) +=
+        y < 0.1 - 0.5 * width ? -0.1 : 0.02;
+  });
+  const ShapeRules all = {0.0, 0.03, 1e9}, own = {0.0, 0.03, 1e9, 0.08};
+  EXPECT_NEAR(view.change(patch, all).shaped, 0.0, 0.01) << "what it cuts falls beside its edge";
+  EXPECT_NEAR(view.change(patch, own).shaped, 2.0 * 0.1 * 0.1, 0.004);
+  EXPECT_NEAR(view.change(patch, own).finished, 2.0 * 0.1, 0.04);
+}
+
+TEST(StepSearch, PassesAlongAFaceBeginAtItsTop) {
+  const HandMadeJob job = leaning_trench();
+  const JobMap map = job.map();
+  Terrain ground = job.ground;
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    if (!std::isnan(target)) ground.bank.z(at.row, at.col) = std::min(0.0, target + 0.08);
+  });
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  const std::vector<DigStart> none;
+  StepTask task{job.settings, map, ground, base, {{4.5, 3.5, 3.0}, 1.57, 2.0, false}, none};
+  for (const double lane : {0.0, 0.4, 0.55, 0.7}) task.lines.push_back({0.0, lane, 3.0, 6.5});
+  task.finishing = task.has_faces = task.has_steps = true;
+  auto dig = best_dig(task);
+  ASSERT_TRUE(dig.has_value());
+  EXPECT_EQ(dig->lane, 0.7);
+  EXPECT_GT(dig->path.start_x, 5.9) << "all along at once";
+  EXPECT_GT(dig->path.parameters.drag_length, 2.0);
+  const std::vector<DigStart> done = {{0.7, 4.0, 0.0}, {0.55, 6.0, 0.0}, {0.4, 6.0, 0.0}};
+  StepTask next{job.settings, map, ground, base, {{4.5, 3.5, 3.0}, 1.57, 2.0, false}, done};
+  next.lines = task.lines;
+  next.finishing = next.has_faces = next.has_steps = true;
+  dig = best_dig(next);
+  ASSERT_TRUE(dig.has_value());
+  EXPECT_EQ(dig->lane, 0.0) << "each lane along a face once";
+  next.leaves_floor = true;
+  EXPECT_FALSE(best_dig(next).has_value());
+}
+
 TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
   SlopeJob job;
   JobMap map = job.map();

@@ -114,12 +114,12 @@ TEST(JobRules, AWidePitTakesTwiceThePassesOfATrench) {
   EXPECT_NE(after_passes(PitJob(narrow), 0, 8), JobAction::finish);
 }
 
-TEST(JobRules, ATrenchWhoseWallsLeanBackTakesAsMany) {
+TEST(JobRules, ATrenchWhoseWallsLeanBackTakesMore) {
   const auto lean = [](PlainSiteFolder& of) {
     of.site["design"]["wall_horizontal_per_vertical"] = 1.0;
   };
-  EXPECT_EQ(after_passes(PitJob(narrow, 0.4, lean), 0, 15), JobAction::finish);
-  EXPECT_NE(after_passes(PitJob(narrow, 0.4, lean), 0, 16), JobAction::finish);
+  EXPECT_EQ(after_passes(PitJob(narrow, 0.4, lean), 0, 29), JobAction::finish);
+  EXPECT_NE(after_passes(PitJob(narrow, 0.4, lean), 0, 30), JobAction::finish);
 }
 
 /// A trench with walls that lean back so far that its top is wide.
@@ -151,6 +151,35 @@ TEST(JobRules, PassesBeginWhereLanesForVolumeLeaveStepsOfAFace) {
   });
   trench.stand_at(4, [](JobRecord& record) { record.fruitless_digs = no_more; });
   EXPECT_EQ(trench.next().what, JobAction::finish);
+}
+
+TEST(JobRules, FacesAreShapedBeforeWhatFallsOffThemIsDug) {
+  PitJob trench = battered_trench();
+  ASSERT_TRUE(trench.stations.at(4).leaves_floor);
+  trench.see([](double x, double y) {
+    if (x < 2.0 || x > 6.0) return 0.0;
+    const double face = (std::abs(y) - 0.5 * narrow) / 1.73;
+    return std::min(0.0, -0.45 + std::max(0.0, face - 0.02));
+  });
+  for (const std::size_t place : {4U, 5U}) {
+    trench.stand_at(place);
+    const JobStation& station = trench.stations[place];
+    const double outermost = (place == 4 ? station.passes.front() : station.passes.back());
+    const JobStep step = trench.next();
+    EXPECT_EQ(step.what, JobAction::finish) << place;
+    EXPECT_NEAR(step.lane, outermost - station.beside, 0.31) << place;
+    EXPECT_FALSE(trench.record().barren.empty()) << "each lane along a face once";
+  }
+  trench.stand_at(5, [&](JobRecord& record) {
+    for (const double lane : trench.stations[5].passes)
+      record.barren.push_back({lane - trench.stations[5].beside, 5.0, 0.0});
+  });
+  EXPECT_EQ(trench.next().what, JobAction::dig);
+  trench.stand_at(4, [&](JobRecord& record) {
+    for (const double lane : trench.stations[4].passes)
+      record.barren.push_back({lane - trench.stations[4].beside, 5.0, 0.0});
+  });
+  EXPECT_EQ(trench.next().what, JobAction::move) << "the soil is left to the other side";
 }
 
 /// What comes after the last place before the far end is dug from beyond, where a strip there is
