@@ -93,6 +93,8 @@ constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do bett
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
 constexpr Attitude steep_attitude = {1.1, false};                    // along the walls of a pit
 const std::array<double, 4> finish_angles = {0.05, 0.1, 0.2, 0.35};  // likewise
+const std::array<double, 3> face_angles = {0.05, 0.1, 0.2};          // likewise along a face
+constexpr double face_step = 0.1;                                    // likewise between starts [m]
 constexpr double steepest_drag = 1.0;                                // down a face [rad]
 constexpr double steepest_floor = 0.15;                              // else it is a face [rad]
 constexpr double on_face = 0.2;                                      // where its slope is told [m]
@@ -386,15 +388,14 @@ class StepSearch {
   /// Along the floor; where a bank stands in the lane by layers from its top, since the bucket
   /// cannot begin within it.
   void lay_out_passes(std::size_t lane) {
-    const GroundProfile& ground = lanes_[lane].leans() ? lanes_[lane].ground : lanes_[lane].mean;
+    if (lanes_[lane].leans()) return lay_out_along_face(lane);
+    const GroundProfile& ground = lanes_[lane].mean;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
     const WorkLine& line = lanes_[lane].line;
     const double last = line.near + least_pass * (line.far - line.near);
-    const std::size_t before = candidates_.size();
     for (double start = line.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
-      if (lanes_[lane].leans() && candidates_.size() > before) break;  // all of it at once
       lay_out_face(lane, start);
       if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
@@ -404,10 +405,28 @@ class StepSearch {
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
-        if (lanes_[lane].leans()) continue;
         const double shorter = drag - (in_shape_before(lanes_[lane], start) - line.near);
         if (shorter > shortest_drag && shorter < drag)
           add(lane, {angle, 1.0, shorter}, start, rules);
+      }
+    }
+  }
+
+  /// All along it at once, from as far as the front reaches with a flat bucket.
+  void lay_out_along_face(std::size_t lane) {
+    const Lane& at = lanes_[lane];
+    DigPathOptions rules = rules_in(lane);
+    rules.drag_keeps_angle = true;
+    const double last = at.line.near + least_pass * (at.line.far - at.line.near);
+    const std::size_t before = candidates_.size();
+    for (double start = at.line.far; start > last && candidates_.size() == before;
+         start -= face_step) {
+      if (!is_worth_a_dig(at, start)) continue;
+      lay_out_face(lane, start);
+      const double down = std::max(0.0, at.ground(start) - rules.floor(start));
+      for (const double angle : face_angles) {
+        const double drag = start - down / std::tan(angle) - nearest(at.line, angle);
+        if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
       }
     }
   }
