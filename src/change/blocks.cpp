@@ -32,6 +32,8 @@ constexpr int fewest_cells = 30;
 /// Ours: with larger cells the window is wider than a metre, and the relief of the ground counts as
 /// rough [m].
 constexpr double largest_cell = 0.2;
+/// Ours: a window of as many smaller cells tells no more of blocks [m].
+constexpr double finest_cell = 0.01;
 constexpr double loose_roughness = 0.020;  // loose soil has less about a window of 0.3 m [m]
 constexpr double block_roughness = 0.040;  // blocks have more
 constexpr double heap_level = 0.5;         // quantile of the windows that represents a heap
@@ -387,18 +389,9 @@ void estimate_voids(const VolumeChange& change, double depth, const BlockOptions
                            tenths(100.0 * sd) + " % of the heap");
 }
 
-}  // namespace
-
-BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChange& change,
-                          const BlockOptions& options) {
-  check(after, change, options);
-  if (after.front().cell_size > largest_cell) {
-    BlockReport unjudged;
-    unjudged.reasons.push_back("cells of " + number_text(after.front().cell_size) +
-                               " m are too large to detect blocks, at most " +
-                               number_text(largest_cell) + " m");
-    return unjudged;
-  }
+/// On cells no finer than what is looked for.
+BlockReport assess(const std::vector<HeightMap>& after, const VolumeChange& change,
+                   const BlockOptions& options) {
   std::vector<AreaMasks> masks;
   for (const AreaChange& area : change.areas) masks.push_back(masks_of(area, change.zones));
   std::vector<Patch> heaps;
@@ -424,6 +417,62 @@ BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChang
     estimate_voids(change, depth_of_heap(change, masks), options, report);
   }
   return report;
+}
+
+Eigen::Index step_over(const HeightMap& map) {
+  constexpr double rounding = 1e-9;
+  const auto most = static_cast<double>(std::max(map.z.rows(), map.z.cols()));
+  return static_cast<Eigen::Index>(
+      std::clamp(std::ceil(finest_cell / map.cell_size - rounding), 1.0, most));
+}
+
+template <typename Layer>
+Layer every(Eigen::Index step, const Layer& layer) {
+  return layer(Eigen::seq(0, layer.rows() - 1, step), Eigen::seq(0, layer.cols() - 1, step));
+}
+
+/// Larger cells around the middles of some, with the heights and the noise of these.
+HeightMap thinned(const HeightMap& map) {
+  const Eigen::Index step = step_over(map);
+  const double wider = map.cell_size * static_cast<double>(step - 1);
+  return {map.origin.array() - 0.5 * wider, map.cell_size + wider, every(step, map.z)};
+}
+
+AreaChange thinned(const AreaChange& area) {
+  AreaChange some;
+  some.difference = thinned(area.difference);
+  some.zone = every(step_over(area.difference), area.zone);
+  some.noise_sd = area.noise_sd;
+  return some;
+}
+
+BlockReport assess_thinned(const std::vector<HeightMap>& after, const VolumeChange& change,
+                           const BlockOptions& options) {
+  std::vector<HeightMap> maps;
+  maps.reserve(after.size());
+  for (const HeightMap& map : after) maps.push_back(thinned(map));
+  VolumeChange some;
+  some.after = change.after;
+  some.zones = change.zones;
+  for (const AreaChange& area : change.areas) some.areas.push_back(thinned(area));
+  return assess(maps, some, options);
+}
+
+}  // namespace
+
+BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChange& change,
+                          const BlockOptions& options) {
+  check(after, change, options);
+  if (after.front().cell_size > largest_cell) {
+    BlockReport unjudged;
+    unjudged.reasons.push_back("cells of " + number_text(after.front().cell_size) +
+                               " m are too large to detect blocks, at most " +
+                               number_text(largest_cell) + " m");
+    return unjudged;
+  }
+  const bool is_fine = std::any_of(after.begin(), after.end(),
+                                   [](const HeightMap& map) { return step_over(map) > 1; });
+  return is_fine ? assess_thinned(after, change, options) : assess(after, change, options);
 }
 
 }  // namespace excavplan

@@ -274,7 +274,7 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
   append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {
-    append(check_registration(pair), doubts);
+    append(check_registration(outlined.scans, pair, area), doubts);
     append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
     append(check_curvature(pair.surfaces, area), doubts);
   };

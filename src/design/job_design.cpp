@@ -164,11 +164,12 @@ class PlainSite {
     words.batter = design.number_or(batter, 0.0, 0.0, 20.0);
     const std::vector<double> origin = design.numbers("origin_m", 2);
     words.from = {origin[0], origin[1]};
-    if (design.states("floor_z_at_middle_m")) {
-      words.floor_z = design.number("floor_z_at_middle_m", -1e6, 1e6);
-    } else {
+    const bool has_floor = design.states("floor_z_at_middle_m");
+    if (has_floor) words.floor_z = design.number("floor_z_at_middle_m", -1e6, 1e6);
+    if (!has_floor || design.has("depth_m")) {
       words.depth = design.number("depth_m", 0.01, highest_thing);
     }
+    if (has_floor) words.depth.reset();
     return words;
   }
 

@@ -88,7 +88,8 @@ AtDensity Estimator::at(double density) const {
 }
 
 Logarithms Estimator::by(const PlayedJob& played, const AtDensity& at) const {
-  const double of_reference = at.swollen / at.dig.payload_volume;
+  // Less than a load is one dig, too.
+  const double of_reference = std::max(at.swollen / at.dig.payload_volume, 1.0 / played.digs);
   const double of_cycle = at.dig.cycle_energy - machine_.engine->idle_power * at.dig.cycle_time;
   const double time_taken = played.time * of_reference * at.dig.cycle_time;
   const double work = played.work * of_reference * of_cycle;
@@ -188,6 +189,7 @@ JobEstimate Estimator::estimate() const {
   estimate.swollen = of_ground(likely.swollen, scaled);
   estimate.mass = of_ground(likely.mass, scaled + 1);
   estimate.digs = scaled_by_played(digs);
+  estimate.digs.least = 1.0;
   estimate.time = scaled_by_played(time);
   estimate.energy = scaled_by_played(energy);
   estimate.fuel = scaled_by_played(fuel_volume);
@@ -211,7 +213,7 @@ double EstimateSpread::total() const {
 
 std::array<double, 2> EstimatedFigure::interval() const {
   const double factor = std::exp(two_sided_95_percent * spread.total());
-  return {value / factor, value * factor};
+  return {std::max(least, value / factor), value * factor};
 }
 
 EstimateBasis shipped_basis(const Machine& machine) {

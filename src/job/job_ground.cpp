@@ -113,8 +113,8 @@ DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const Di
   }
 }
 
-JobGround::JobGround(const std::string& folder, const JobSettings& settings)
-    : folder_(folder), settings_(settings), site_(folder, settings.site, SiteAccess::write) {}
+JobGround::JobGround(const std::string& folder, const JobSettings& settings, SiteAccess access)
+    : folder_(folder), settings_(settings), access_(access), site_(folder, settings.site, access) {}
 
 void JobGround::expect(const JobStep& step, double height_bias) {
   if (!step.moves_front()) return;
@@ -243,8 +243,10 @@ void JobGround::forget() noexcept {
 }
 
 void JobGround::load(long long number, long long updates) {
-  if (site_.updates() > updates) site_.undo();
-  if (site_.updates() != updates) {
+  const bool is_reader = access_ == SiteAccess::read;
+  if (site_.updates() > updates && !is_reader) site_.undo();
+  const bool is_one_ahead = is_reader && site_.updates() == updates + 1;
+  if (site_.updates() != updates && !is_one_ahead) {
     throw Error(ErrorKind::bad_file, folder_ + ": its site has taken in " +
                                          std::to_string(site_.updates()) + " scans, its job " +
                                          std::to_string(updates) +

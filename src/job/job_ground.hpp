@@ -41,8 +41,9 @@ DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const Di
 /// dug, it stays as foretold.
 class JobGround {
  public:
-  /// Opens the site of a folder.
-  JobGround(const std::string& folder, const JobSettings& settings);
+  /// Opens the site of a folder. @param access  read: for load(), expect() and what they tell
+  JobGround(const std::string& folder, const JobSettings& settings,
+            SiteAccess access = SiteAccess::write);
 
   const Site& site() const { return site_; }
   const Terrain& expected() const { return expected_; }
@@ -65,7 +66,7 @@ class JobGround {
   /// Writes the ground at the last scan. @param number  of such files; the last two are kept
   void save(long long number) const;
   /// Goes on from what was written at that scan. A later one of the site, whose job was not written
-  /// any more, is taken back.
+  /// yet or any more, is taken back, or left alone by one who only reads.
   /// @param updates  that the site had taken in
   /// @throws Error (bad_file) if the site has taken in others
   void load(long long number, long long updates);
@@ -84,6 +85,7 @@ class JobGround {
 
   std::string folder_;
   const JobSettings& settings_;
+  SiteAccess access_;
   Site site_;
   GroundState scanned_;  ///< at the last scan, on the grid of the first
   Terrain expected_;     ///< with what was dug since

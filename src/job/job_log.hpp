@@ -38,7 +38,6 @@ class JobLog {
   void cut(const JobRecord& record);
 
   const JobHistory& history() const { return recorder_.history(); }
-  const JobHistory::Ground& now() const { return recorder_.now(); }
 
  private:
   /// How far a record had come, and where the log ended then.

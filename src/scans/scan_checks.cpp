@@ -9,6 +9,8 @@
 #include <set>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include <excavplan/change/change_options.hpp>
 
 #include "base/angles.hpp"
@@ -262,6 +264,16 @@ double lost_beside_heap(const VolumeChange& change) {
   return lost;
 }
 
+/// Ours: a sensor on a mast stands no higher over one on the ground [m].
+constexpr double most_above = 10.0;
+
+/// How far the scan after lies above the scan before where nothing changed, as it was given [m].
+double height_above(const RegisteredPair& pair, const AreaChange& area) {
+  const Eigen::Vector3d& centre = pair.surfaces.alignment.centre;
+  const Eigen::Vector4d back = pair.correction * centre.homogeneous();
+  return area.datum + centre.z() - back.z();
+}
+
 }  // namespace
 
 std::vector<Warning> causes_of(std::vector<Warning> warnings) {
@@ -340,8 +352,19 @@ std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   return found;
 }
 
-std::vector<Warning> check_registration(const RegisteredPair& pair) {
+std::vector<Warning> check_registration(const ScanPair& scans, const RegisteredPair& pair,
+                                        const AreaChange& area) {
   const Alignment& found = pair.surfaces.alignment;
+  const double above = height_above(pair, area);
+  if (std::abs(above) > most_above) {
+    return {{WarningCode::registration_beyond_prior,
+             name_of(scans.after) + ": lies " + readable(std::abs(above), 3) + " m " +
+                 (above > 0.0 ? "above " : "below ") + name_of(scans.before) + ", must be within " +
+                 number_text(most_above) +
+                 " m: are heights in the same unit and datum? Else give its transform by "
+                 "`after_frame`",
+             true}};
+  }
   const Displacement moved = displacement_by(pair.correction, found.centre);
   if (!moved.is_beyond_prior()) return {};
   std::string message = "the scan after was moved against the scan before by " +

@@ -27,8 +27,12 @@ std::optional<Warning> check_no_data(const ScanOutline& seen, const Scan& scan);
 std::vector<Warning> check_outlines(const OutlinedPair& pair);
 
 /// Code `registration_beyond_prior`: the scan after has moved by more than three standard
-/// deviations of the priors. Ends trust where the ground still differs.
-std::vector<Warning> check_registration(const RegisteredPair& pair);
+/// deviations of the priors. Ends trust where the ground still differs, and where heights are so
+/// far apart that they are of two datums or units.
+///
+/// @param area of the change that was found in the surfaces of `pair`
+std::vector<Warning> check_registration(const ScanPair& scans, const RegisteredPair& pair,
+                                        const AreaChange& area);
 
 /// Code `tilted`: ground of more than 5 degrees without a frame. Ends trust where walls may
 /// overhang.

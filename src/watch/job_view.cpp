@@ -11,6 +11,7 @@
 #include <excavplan/base/error.hpp>
 #include <excavplan/ground/ground_state.hpp>
 
+#include "job/job_ground.hpp"
 #include "job/job_log.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
@@ -42,6 +43,7 @@ struct JobView::State {
   JobMap map;
   Eigen::ArrayXXd design;  ///< JobMap::target as told
   JobRecord record = {};
+  Terrain ground = {};
   JobProgress progress = {};
   std::optional<JobLog> log = {};
   int rewritten = 0;
@@ -52,8 +54,16 @@ struct JobView::State {
     target.z = design;
     return {folder, history_start(settings.design, target, first, of.progress.design_volume)};
   }
+  /// As another process expects it.
+  JobGround ground_of(const JobRecord& of) const {
+    JobGround expected(folder, settings, SiteAccess::read);
+    expected.load(of.grounds, of.site_updates);
+    for (const JobStep& dig : of.unseen) expected.expect(dig, of.learning.height_bias.mean);
+    return expected;
+  }
   void read(const FileStamp& at) {
     JobRecord now = load_record(folder);
+    const JobGround expected = ground_of(now);
     const bool is_new = !log || !log->follow(now);
     if (is_new) {
       JobLog anew = new_log(now);
@@ -64,9 +74,8 @@ struct JobView::State {
     record = std::move(now);
     if (!settings.surface.hangs_on_scan)
       map.target.z = raised(design, map.target, record.learning.datum.plane());
-    const Terrain ground = undisturbed(log->now().surface);
-    progress =
-        measured(record.progress, map, {ground, log->now().seen_at}, settings.design.tolerance);
+    ground = expected.expected();
+    progress = measured(record.progress, map, {ground, expected.seen()}, settings.design.tolerance);
     stamp = at;
   }
 };
@@ -98,6 +107,7 @@ const JobSettings& JobView::settings() const { return state_->settings; }
 const JobHistory& JobView::history() const { return state_->log->history(); }
 int JobView::rewritten() const { return state_->rewritten; }
 const JobProgress& JobView::progress() const { return state_->progress; }
+const Terrain& JobView::ground() const { return state_->ground; }
 const std::optional<JobStep>& JobView::present() const { return state_->record.present; }
 
 JobBelief JobView::belief() const {

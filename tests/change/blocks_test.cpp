@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.hpp"
+#include "ground/grid_cells.hpp"
 
 #include "support/block_heap.hpp"
 #include "support/errors.hpp"
@@ -294,6 +295,39 @@ TEST(Blocks, AreNotLookedForWithCellsLargerThanTheyAre) {
   EXPECT_EQ(report.score, 0.0);
   EXPECT_EQ(report.reasons, std::vector<std::string>{
                                 "cells of 0.25 m are too large to detect blocks, at most 0.2 m"});
+}
+
+/// Every cell of a survey as many small ones of its height.
+Survey split(const Survey& survey, Eigen::Index parts) {
+  const auto fine = [&](const auto& layer) {
+    auto cells = layer;
+    cells.resize(layer.rows() * parts, layer.cols() * parts);
+    for_each_cell(cells,
+                  [&](Cell at) { cells(at.row, at.col) = layer(at.row / parts, at.col / parts); });
+    return cells;
+  };
+  Survey result = survey;
+  for (HeightMap* map : {&result.after[0], &result.change.areas[0].difference}) {
+    map->cell_size /= static_cast<double>(parts);
+    map->z = fine(map->z);
+  }
+  result.change.areas[0].zone = fine(survey.change.areas[0].zone);
+  return result;
+}
+
+/// A window of each cell would hold the more of them the smaller they are.
+TEST(Blocks, CellsTooSmallToTellMoreAreThinned) {
+  test::BlockHeapOptions small;
+  small.size = 0.08;
+  small.solids = 0.05;
+  const Survey survey = survey_of(test::block_heap(small, 6), 0.01, 0.005, 1);
+  const BlockReport coarse = assess(survey);
+  EXPECT_TRUE(coarse.blocks);
+  const BlockReport fine = assess(split(survey, 3));
+  EXPECT_EQ(fine.heap.cells, coarse.heap.cells);
+  EXPECT_EQ(fine.heap.fine_roughness, coarse.heap.fine_roughness);
+  EXPECT_EQ(fine.score, coarse.score);
+  EXPECT_EQ(fine.reasons, coarse.reasons);
 }
 
 TEST(Blocks, RefusesWhatBreaksARule) {

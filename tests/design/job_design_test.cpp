@@ -72,6 +72,27 @@ TEST(PlainSite, ErrorsNameKeyAndRule) {
   }
 }
 
+TEST(PlainSite, ADepthBesideAFloorIsRead) {
+  const auto with_depth = [](const string& depth) {
+    return R"({"format":"plain-site","version":1,"design":{"kind":"trench","length_m":15,)"
+           R"("floor_width_m":1,"origin_m":[1,2],"heading_rad":0.5,"floor_z_at_middle_m":-0.4,)"
+           R"("depth_m":)" +
+           depth + "}}";
+  };
+  const DesignFile file("json", with_depth("0.5"));
+  const JobDesign job = read_plain_site(file.path());
+  EXPECT_EQ(job.words->floor_z, -0.4);
+  EXPECT_FALSE(job.words->depth.has_value());
+  for (const auto& [depth, expected] : std::vector<std::pair<string, string>>{
+           {R"("deep")", "design.depth_m: is \"deep\", expected a number"},
+           {"null", "design.depth_m: is null, expected a number"},
+           {"-0.5", "design.depth_m: is -0.5, must be in 0.01"}}) {
+    const DesignFile bad("json", with_depth(depth));
+    const string error = error_about([&] { read_plain_site(bad.path()); }, bad.path());
+    EXPECT_NE(error.find(expected), string::npos) << error;
+  }
+}
+
 TEST(PlainSite, AStartWhereNoMachineStandsIsRefused) {
   JobDesign job;
   job.dump_areas = {{DumpArea::Kind::heap, polygon_of_text("0,0,1,0,1,1")}};

@@ -85,6 +85,22 @@ TEST(JobEstimate, RisesWithTheDensityAndScalesWithTheVolume) {
   EXPECT_NEAR(longer.reference_energy, last.reference_energy, 1e-6);
 }
 
+TEST(JobEstimate, LessThanABucketTakesADig) {
+  const JobEstimate found =
+      estimate_job(zx120(), soil("loam"), trench("0.5x0.3x0.2m", {50.0, 25.0}), basis());
+  EXPECT_LT(found.reference_digs, 0.1);
+  EXPECT_NEAR(found.digs.value, 1.0, 1e-12);
+  EXPECT_GE(found.digs.interval()[0], 1.0);
+  EXPECT_GE(found.digs.interval()[1], found.digs.value);
+  EXPECT_GT(found.time.value, found.dig.cycle_time);
+  EXPECT_GT(found.energy.value, 0.5 * found.dig.cycle_energy);
+  EXPECT_FALSE(found.trustworthy());
+  const JobEstimate few =
+      estimate_job(zx120(), soil("loam"), trench("2x1x0.5m", {50.0, 25.0}), basis());
+  EXPECT_GT(few.digs.value, 1.5);
+  EXPECT_GE(few.digs.interval()[0], 1.0);
+}
+
 TEST(JobEstimate, SpreadsAddInQuadratureAndComeFromWhatIsNotKnown) {
   const SoilKind loam = soil("loam");
   const JobEstimate vague = estimate_job(zx120(), loam, trench("15x1x0.5", {50.0, 25.0}), basis());

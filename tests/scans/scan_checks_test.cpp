@@ -276,6 +276,25 @@ TEST(ScanChecks, AScanThatMovedTooFarEndsTrust) {
   }
 }
 
+TEST(ScanChecks, HeightsOfTwoDatumsEndTrust) {
+  for (const double raised : {-9.0, 9.0, -30.0, 5000.0}) {
+    Survey survey(6, true, 8.0 * degree, 0.02);
+    Survey::move(survey.after, Affine(Eigen::Translation3d(0.0, 0.0, raised)));
+    for (const bool registered : {true, false}) {
+      DensityOptions options;
+      options.registered = registered;
+      options.threads = 1;
+      const DensityEstimate found = estimate_density(survey.scans(), paper_law(), options);
+      const Warning* apart = nullptr;
+      for (const Warning& each : found.warnings) {
+        if (contains(each.message, "must be within 10 m")) apart = &each;
+      }
+      EXPECT_EQ(apart != nullptr, std::abs(raised) > 10.0) << raised << registered;
+      EXPECT_TRUE(!apart || apart->ends_trust);
+    }
+  }
+}
+
 TEST(ScanChecks, SwappedScansOfTwoAreasAreRefused) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Survey survey(seed, false);

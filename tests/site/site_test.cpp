@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -235,6 +236,31 @@ TEST(SiteDoubts, AMachineThatMovedIsToldAndItsScanPutInPlace) {
   EXPECT_TRUE(has(update.warnings, WarningCode::registration_beyond_prior));
   EXPECT_NEAR(height_at(site.ground().terrain.surface(), 6.0, 0.3),
               height_at(digs.ground().surface(), 6.0, 0.3), 0.015);
+}
+
+TEST(SiteDoubts, AScanOfAnotherDatumIsNotTaken) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  for (const double raised : {5000.0, -45.0}) {
+    SiteEvent event = digs.scan();
+    event.scan.name = "raised.ply";
+    event.scan.site_from_scan(2, 3) = raised;
+    const SiteUpdate update = site.update(event);
+    EXPECT_FALSE(update.taken);
+    EXPECT_FALSE(update.trustworthy);
+    const std::string found = raised > 0.0 ? "raised.ply: lies 5000 m above known ground"
+                                           : "raised.ply: lies 45.0 m below known ground";
+    EXPECT_TRUE(
+        std::any_of(update.warnings.begin(), update.warnings.end(), [&](const Warning& each) {
+          return each.message.find(found + ", must be within 10 m") != std::string::npos;
+        }));
+  }
+  EXPECT_EQ(site.updates(), 1);
+  SiteEvent elsewhere = digs.scan();  // no height is absolute
+  elsewhere.scan.site_from_scan(2, 3) = 2.0;
+  EXPECT_TRUE(site.update(elsewhere).taken);
 }
 
 TEST(SiteDoubts, ASiteIsOfOneSoilMachineAndLaw) {

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <string>
 
 #include <excavplan/machine/trajectory.hpp>
@@ -102,6 +103,31 @@ TEST_F(PlanSite, OrderStepAndReport) {
   EXPECT_EQ(drawn["design_m3"], shown["progress"]["design_m3"]);
   EXPECT_EQ(answer("plan-site", {"undo", job()})["step"], dig["step"]);
   EXPECT_EQ(content_of(job() + "/job.json"), record);
+}
+
+/// Each file of a folder by its name.
+std::map<std::string, std::string> files_in(const std::string& path) {
+  std::map<std::string, std::string> files;
+  for (const auto& each : fs::directory_iterator(path)) {
+    files[each.path().filename().string()] = content_of(each.path().string());
+  }
+  return files;
+}
+
+TEST_F(PlanSite, WhatOnlyLooksLeavesTheFolderAsItIs) {
+  answer("plan-site", order());
+  done(next(), {"--base", "-0.6,0,0"});
+  const json after = done(next());
+  EXPECT_EQ(after["progress"]["digs"], 1);
+  fs::remove(job() + "/site.lock");
+  const auto files = files_in(job());
+  fs::permissions(job(), fs::perms::owner_read | fs::perms::owner_exec);  // but for root
+  const json shown = answer("plan-site", {"show", job(), "--report", folder.file("job.html")});
+  EXPECT_EQ(shown["progress"], after["progress"]);
+  const json rest = answer("plan-site", {"estimate", job(), "--density", "40"});
+  EXPECT_LT(number(rest, "/design_m3"), 0.95);
+  fs::permissions(job(), fs::perms::owner_all);
+  EXPECT_EQ(files_in(job()), files);
 }
 
 TEST_F(PlanSite, AScanWithoutAStepAndAJobThatEnds) {

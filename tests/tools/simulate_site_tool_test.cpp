@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -121,6 +123,21 @@ TEST(SimulateSite, ThePagePlaysTheLogToTheGroundAfter) {
       ASSERT_NEAR(heights(row, col) / 1000.0, height_at(after, x, y), 0.00051) << x << ' ' << y;
     }
   }
+}
+
+/// In ground that has its shape already, so that it is soon over.
+TEST(SimulateSite, AMachineWithoutALawOfItsOwnIsPlayed) {
+  PlainSiteFolder folder;
+  folder.height = [](double x, double y) {
+    return x > 2.0 && x < 6.0 && std::abs(y) < 0.5 ? -0.4 : 0.0;
+  };
+  json machine = json::parse(content_of(EXCAVPLAN_DATA_SOURCE "/machines/zx120.json"));
+  machine["name"] = "other";
+  folder.site["machine"]["class"] = folder.path() + "/other.json";
+  std::ofstream(folder.path() + "/other.json") << machine;
+  folder.read();
+  const json found = answer("simulate-site", {folder.path()});
+  EXPECT_EQ(found["digs"], 0);
 }
 
 TEST(SimulateSite, TheBoundIsBelowTheReference) {

@@ -29,13 +29,11 @@ void expect_same(const JobHistory& a, const JobHistory& b) {
   EXPECT_TRUE(same(a.target.z, b.target.z));
 }
 
-/// Heights are rounded to a millimetre, by half of it at most.
-void expect_near(const JobProgress& a, const JobProgress& b) {
-  constexpr double rounding = 0.0005;
-  EXPECT_NEAR(a.left_volume, b.left_volume, rounding * 4.0);  // of the footprint, in m^2
-  EXPECT_NEAR(a.rms, b.rms, rounding);
-  EXPECT_NEAR(a.p95, b.p95, 1.1 * rounding);
-  EXPECT_NEAR(a.seen, b.seen, 1e-12);
+void expect_same(const JobProgress& a, const JobProgress& b) {
+  EXPECT_EQ(a.left_volume, b.left_volume);
+  EXPECT_EQ(a.rms, b.rms);
+  EXPECT_EQ(a.p95, b.p95);
+  EXPECT_EQ(a.seen, b.seen);
   EXPECT_EQ(a.digs, b.digs);
   EXPECT_EQ(a.moves, b.moves);
   EXPECT_EQ(a.scans, b.scans);
@@ -62,7 +60,7 @@ TEST(JobView, FollowsAJobThatAnotherHolds) {
     EXPECT_FALSE(view.present());
     EXPECT_FALSE(view.refresh());
     expect_same(view.history(), job.history());
-    expect_near(view.progress(), job.progress());
+    expect_same(view.progress(), job.progress());
   }
   EXPECT_GE(view.progress().scans, 1);
   EXPECT_LT(view.belief().payload.sd, sd) << "payloads were learnt from";

@@ -7,7 +7,8 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/design/cut_and_fill.hpp>
 #include <excavplan/job/job_estimate.hpp>
-#include <excavplan/job/site_job.hpp>
+#include <excavplan/job/job_order.hpp>
+#include <excavplan/watch/job_view.hpp>
 
 #include "base/text.hpp"
 #include "design/design_walls.hpp"
@@ -28,8 +29,8 @@ PlannedCut cut_in(const JobInputs& inputs) {
   if (order.site || order.trench || order.design || inputs.scan.scan) {
     usage_error("FOLDER excludes --site, --trench, --design and --scan: its job says them");
   }
-  const JobSettings settings = load_order(inputs.folder);
-  const SiteJob job = SiteJob::resume(inputs.folder, settings);
+  const JobView job(inputs.folder, load_order(inputs.folder));
+  const JobSettings& settings = job.settings();
   CutOptions options;
   options.errors = errors_of_scan();
   PlannedCut cut;

@@ -9,6 +9,7 @@
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/logs/dig_log.hpp>
 #include <excavplan/site/site.hpp>
+#include <excavplan/watch/job_view.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -34,8 +35,7 @@ void forget_scan(const std::string& folder, const JobSettings& settings) {
   if (!site.is_empty()) site.undo();
 }
 
-void add_progress(const SiteJob& job, Outcome& outcome) {
-  const JobProgress progress = job.progress();
+void add_progress(const JobProgress& progress, Outcome& outcome) {
   outcome.json["progress"] = progress_json(progress);
   for (const std::string& line : progress_lines(progress)) outcome.lines.push_back(line);
 }
@@ -66,7 +66,7 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   Outcome outcome;
   outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
   add_scan(order.first.report, job, outcome);
-  add_progress(job, outcome);
+  add_progress(job.progress(), outcome);
   for (const Warning& each : job.wall_warnings()) outcome.warnings.push_back(each);
   outcome.json["trustworthy"] = true;  // unless a warning ends it
   for (const std::string& note : order.settings.surface.notes) console.note("design: " + note);
@@ -163,7 +163,7 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
                             " is not the present one, " + std::to_string(present.id) +
                             ": nothing is changed");
   }
-  add_progress(job, outcome);
+  add_progress(job.progress(), outcome);
   return outcome;
 }
 
@@ -173,7 +173,7 @@ Outcome work_scan(const JobInputs& inputs, Console& /*console*/) {
   job.look(scan.scan, scan.time);
   Outcome outcome;
   add_scan(scan.report, job, outcome);
-  add_progress(job, outcome);
+  add_progress(job.progress(), outcome);
   return outcome;
 }
 
@@ -187,21 +187,18 @@ Outcome work_serve(const JobInputs& inputs, Console& console) {
         {[&] { return console.stop_requested(); },
          [&](const std::string& url) { console.note("the job is shown at " + url); }});
   Outcome outcome;
-  const JobProgress& progress = feed.job().progress();
-  outcome.json["progress"] = progress_json(progress);
-  outcome.lines = progress_lines(progress);
+  add_progress(feed.job().progress(), outcome);
   return outcome;
 }
 
 Outcome work_show(const JobInputs& inputs, Console& console) {
   if (inputs.serve) return work_serve(inputs, console);
-  const JobSettings settings = load_order(inputs.folder);
-  const SiteJob job = SiteJob::resume(inputs.folder, settings);
+  const JobView job(inputs.folder, load_order(inputs.folder));
   Outcome outcome;
-  add_progress(job, outcome);
+  add_progress(job.progress(), outcome);
   if (inputs.report) {
-    outcome.page = page_of(progress_report(job.progress(), {job.history(), settings.site.machine}),
-                           *inputs.report);
+    const ReportJob drawn = {job.history(), job.settings().site.machine};
+    outcome.page = page_of(progress_report(job.progress(), drawn), *inputs.report);
   }
   return outcome;
 }
@@ -211,7 +208,7 @@ Outcome work_undo(const JobInputs& inputs, Console& /*console*/) {
   job.undo();
   Outcome outcome;
   outcome.json["step"] = job.next().id;
-  add_progress(job, outcome);
+  add_progress(job.progress(), outcome);
   return outcome;
 }
 

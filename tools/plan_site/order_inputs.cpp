@@ -134,23 +134,11 @@ JobDesign job_of(const OrderInputs& inputs, const Machine& machine) {
   return job;
 }
 
-/// A law of machine and soil: that of a kit, or the shipped one; empty if there is none.
-std::string law_path(const std::string& machine_word, const Machine& machine,
-                     const std::string& soil) {
-  if (const auto kit = kit_law(machine_word, machine, soil)) return *kit;
-  try {
-    return find_data_file(law_file(machine.name, soil));
-  } catch (const Error&) {
-    return {};  // solids are conserved: density_law_of()
-  }
-}
-
 Order finished(Order order, const std::string& machine_word) {
   SiteSettings& site = order.settings.site;
   order.files.machine = machine_path(machine_word);
   order.files.law = law_path(machine_word, site.machine, site.soil.name);
-  site.law =
-      order.files.law.empty() ? density_law_of(site.soil) : load_density_law(order.files.law);
+  site.law = law_in(order.files.law, site.soil);
   return order;
 }
 

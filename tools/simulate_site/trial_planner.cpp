@@ -5,11 +5,12 @@
 #include <filesystem>
 #include <random>
 
-#include <excavplan/base/data_files.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/trial/job_score.hpp>
 #include <excavplan/trial/plain_planners.hpp>
 #include <excavplan/trial/true_site.hpp>
+
+#include "inputs/named_kinds.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -62,9 +63,9 @@ std::unique_ptr<JobPlanner> planner_of(const std::string& word, const HiddenSite
     if (policy.word == word) return plain_planner(policy, site.known, site.first_scan, machine);
   }
   const bool knows = word == "known";
-  const std::string law = machine.name + "-" + site.known.soil.name;
-  JobSettings settings =
-      settings_of(site.known, machine, load_density_law(shipped_or_file("laws", law)));
+  const SoilKind& soil = site.known.soil;
+  const std::string law = law_path(site.known.machine, machine, soil.name);
+  JobSettings settings = settings_of(site.known, machine, law_in(law, soil));
   if (knows) {
     settings.site.soil = site.soil;
     settings.density_percent = mean_density(site);

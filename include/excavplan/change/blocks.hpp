@@ -60,7 +60,8 @@ struct BlockReport {
 /// size to 8 %, voids to 5 % of the volume of the heap; to 15 % and 7 % where blocks are flat or
 /// long, for which it was not tuned. No heap of real blocks was measured. Voids are not estimated
 /// where the heap shows no blocks, or blocks smaller than three cells or larger than the heap is
-/// deep. With cells above 0.2 m the score is 0, with a reason.
+/// deep. With cells above 0.2 m the score is 0, with a reason; of cells below 1 cm only one in
+/// each 1 to 2 cm is looked at.
 ///
 /// @param after height map of each area of `change`, on the grid of its difference
 /// @param change from measure_change()

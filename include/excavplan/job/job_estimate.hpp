@@ -56,6 +56,7 @@ struct EstimateSpread {
 struct EstimatedFigure {
   double value = 0.0;     ///< in the unit of the figure
   EstimateSpread spread;  ///< of that value
+  double least = 0.0;     ///< less is impossible
 
   std::array<double, 2> interval() const;  ///< 95 %
 };
@@ -64,7 +65,7 @@ struct EstimatedFigure {
 struct JobEstimate {
   EstimatedFigure swollen;          ///< volume as it lies loose [m^3]
   EstimatedFigure mass;             ///< moist [kg]
-  EstimatedFigure digs;             ///< with those that finish
+  EstimatedFigure digs;             ///< with those that finish, one at least
   EstimatedFigure time;             ///< with moves and scans [s]
   EstimatedFigure energy;           ///< of cycles and moves [J]
   EstimatedFigure fuel;             ///< [L]

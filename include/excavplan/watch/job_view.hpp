@@ -7,6 +7,7 @@
 #include <string>
 
 #include <excavplan/base/measured.hpp>
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/job/job_history.hpp>
 #include <excavplan/job/job_progress.hpp>
 #include <excavplan/job/job_settings.hpp>
@@ -42,9 +43,9 @@ class JobView {
   const JobHistory& history() const;    ///< as SiteJob::history()
   /// How often steps were taken back, so that the history is not the one before with more events.
   int rewritten() const;
-  /// As SiteJob::progress(), by ground in whole millimetres.
-  const JobProgress& progress() const;
-  JobBelief belief() const;  ///< what the job has learnt
+  const JobProgress& progress() const;  ///< as SiteJob::progress()
+  const Terrain& ground() const;        ///< as SiteJob::ground()
+  JobBelief belief() const;             ///< what the job has learnt
   /// That is planned and not done yet.
   const std::optional<JobStep>& present() const;
 
