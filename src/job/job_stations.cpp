@@ -23,11 +23,12 @@ constexpr double end_wall = 0.67;     // of that reach to the far end: nearer th
 constexpr double end_of_wide = 0.74;  // likewise of a wide design: its face leans back, and takes
                                       // up what is within reach of a nearer place
 constexpr double overlap = 0.25;      // of what is dug from two places in succession [m]
-constexpr double side_margin = 0.04;  // to the sides of the design, as no machine is exact [m]
-constexpr double end_margin = 0.03;   // to the ends of the design, half a cell at least [m]
-constexpr double lane_overlap = 0.1;  // of two lanes [m]
-constexpr double beside_edge = 0.6;   // of tracks that stand beside the design [m]
-constexpr double batter_step = 0.1;   // of passes that leave a face in steps [m]
+constexpr double overlap_of_faces = 0.7;   // likewise of passes that begin on their way down [m]
+constexpr double side_margin = 0.04;       // to the sides of the design, as no machine is exact [m]
+constexpr double end_margin = 0.03;        // to the ends of the design, half a cell at least [m]
+constexpr double lane_overlap = 0.1;       // of two lanes [m]
+constexpr double beside_edge = 0.6;        // of tracks that stand beside the design [m]
+constexpr double batter_step = 0.1;        // of passes that leave a face in steps [m]
 constexpr std::size_t passes_of_lane = 3;  // that far apart are lanes for volume there
 constexpr double least_across = 0.1;       // share of the design, to cut it so
 constexpr double most_left = 0.5;          // of such faces, for another line of work
@@ -248,7 +249,8 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   const double first =
       frame.far - at_reach(machine, is_wide && frame.is_battered ? end_of_wide : end_wall);
   const double last = last_of(frame, machine);
-  const double most_back = farthest_of(machine) - nearest_of(machine) - overlap;
+  const double shared = frame.faces_across > least_across ? overlap_of_faces : overlap;
+  const double most_back = farthest_of(machine) - nearest_of(machine) - shared;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
   const auto groups =
       is_wide ? groups_within(widest_for_volume, lanes_of_all) : groups_of(lanes_of_all);

@@ -93,7 +93,7 @@ constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do bett
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
 constexpr Attitude steep_attitude = {1.1, false};                    // along the walls of a pit
 const std::array<double, 4> finish_angles = {0.05, 0.1, 0.2, 0.35};  // likewise
-const std::array<double, 3> face_angles = {0.05, 0.1, 0.2};          // likewise along a face
+const std::array<double, 2> face_angles = {0.2, 0.35};               // likewise along a face
 constexpr double face_step = 0.1;                                    // likewise between starts [m]
 constexpr double steepest_drag = 1.0;                                // down a face [rad]
 constexpr double steepest_floor = 0.15;                              // else it is a face [rad]
@@ -212,8 +212,9 @@ class StepSearch {
   std::optional<StepDig> best_from_top() {
     std::vector<double> floor;
     for (const Lane& lane : lanes_) {
-      floor.push_back(lane.mean_over(lane.line.near, lane.line.far,
-                                     [&](Index col) { return lane.floor(lane.view.x(col)); }));
+      const double mean = lane.mean_over(lane.line.near, lane.line.far,
+                                         [&](Index col) { return lane.floor(lane.view.x(col)); });
+      floor.push_back(std::isnan(mean) ? -std::numeric_limits<double>::infinity() : mean);
     }
     std::vector<std::size_t> order;
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
