@@ -192,7 +192,9 @@ struct SiteJob::State {
   std::optional<JobStep> best_step(Work work);
   bool has_steps() const { return volume_lane_step(frame) > 0.0; }
   bool may_pass() const;
+  DigStart start_of(const JobStep& dig) const;
   void lay_aside(const JobStep& dig);
+  void drop_present();
   std::vector<double> benches_below() const;
   std::vector<WorkLine> lines_on(double bench, const BasePose& straight) const;
   std::optional<StepDig> best_dig_of(StepTask& task, const std::vector<double>& benches);
@@ -755,10 +757,23 @@ void SiteJob::State::take_scan(const StepReport& report) {
   ++record.progress.scans;
 }
 
-/// Until the machine stands elsewhere.
-void SiteJob::State::lay_aside(const JobStep& dig) {
+DigStart SiteJob::State::start_of(const JobStep& dig) const {
   const double view = frame_at(stations[record.station]).heading - dig.base.heading;
-  record.barren.push_back({dig.lane, dig.path.start_x, wrapped(dig.swung - view)});
+  return {dig.lane, dig.path.start_x, wrapped(dig.swung - view)};
+}
+
+/// Until the machine stands elsewhere.
+void SiteJob::State::lay_aside(const JobStep& dig) { record.barren.push_back(start_of(dig)); }
+
+/// The present step is not done: nor is its lane, if it was laid aside with it.
+void SiteJob::State::drop_present() {
+  if (record.present->digs() && !record.barren.empty()) {
+    const DigStart start = start_of(*record.present), &last = record.barren.back();
+    if (last.lane == start.lane && last.along == start.along) record.barren.pop_back();
+  }
+  record.last_step = record.present->id;
+  record.present.reset();
+  record.planned.reset();
 }
 
 void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
@@ -985,11 +1000,7 @@ void SiteJob::look(const Scan& scan, double time) {
   report.time = time;
   state.keep_whole([&] {
     state.take_scan(report);
-    if (record.present && record.present->what != JobAction::move) {
-      record.last_step = record.present->id;
-      record.present.reset();
-      record.planned.reset();
-    }
+    if (record.present && record.present->what != JobAction::move) state.drop_present();
     JobStep unasked = state.step_of(JobAction::scan);
     unasked.id = 0;
     state.save_changed(before, unasked, report);
