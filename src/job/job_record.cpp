@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "excavplan job";
-constexpr int version = 5;
+constexpr int version = 6;
 constexpr int numbers_of_pose = 6;
 
 constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,
@@ -255,6 +255,7 @@ Json record_json(const JobRecord& record) {
     json["barren"].push_back(each.lane);
     json["barren"].push_back(each.along);
     json["barren"].push_back(each.turned);
+    json["barren"].push_back(each.is_pass ? 1.0 : 0.0);
   }
   json["looks"] = Json::array();
   for (const SensorLook& each : record.looks) {
@@ -299,8 +300,8 @@ JobRecord read_record(const std::string& path) {
   if (object.has("present")) record.present = read_step(object.object("present"));
   if (object.has("planned")) record.planned = read_planned(object.numbers("planned", 7));
   const std::vector<double> barren = object.numbers("barren");
-  for (std::size_t i = 0; i + 2 < barren.size(); i += 3)
-    record.barren.push_back({barren[i], barren[i + 1], barren[i + 2]});
+  for (std::size_t i = 0; i + 3 < barren.size(); i += 4)
+    record.barren.push_back({barren[i], barren[i + 1], barren[i + 2], barren[i + 3] > 0.0});
   const std::vector<double> looks = object.numbers("looks");
   for (std::size_t i = 0; i + 6 < looks.size(); i += 7) {
     record.looks.push_back({{looks[i], looks[i + 1], looks[i + 2]},

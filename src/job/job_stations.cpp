@@ -101,7 +101,7 @@ bool wants_benches(const JobFrame& frame, const std::vector<double>& lanes) {
   return !runs_on_faces && lanes.back() - lanes.front() > least_of_benches;
 }
 
-/// Whether the right side of a bucket in a lane cuts along a face, and the left one does not.
+/// Whether the right side of a bucket in a lane cuts along a face.
 bool leans_right(const JobFrame& frame, double bucket_width, double lane) {
   return frame.faces_across > least_across &&
          lane - 0.5 * bucket_width < frame.floor.right - onto_face;
@@ -117,7 +117,8 @@ std::vector<std::vector<double>> sides_of(const JobFrame& frame, double bucket_w
   });
   if (sides.size() != 2 || other == lanes.begin() || other == lanes.end()) return sides;
   const auto from = other - std::min(other - lanes.begin(), lanes_of_foot);
-  if (lanes.back() - *from > 2.0 * widest_at_wall) return sides;
+  const double widest = std::max(lanes.back() - *from, *(other - 1) - lanes.front());
+  if (widest > 2.0 * widest_at_wall) return sides;
   return {{lanes.begin(), other}, {from, lanes.end()}};
 }
 
@@ -134,7 +135,8 @@ void add_wide(const JobFrame& frame, double bucket_width, double along,
     stations.push_back(station_at(frame, along, side));
     stations.back().is_wide = true;
     stations.back().is_again = true;
-    stations.back().leaves_floor = leans_right(frame, bucket_width, side.back());
+    stations.back().leaves_floor =
+        &side != &sides.back() && leans_right(frame, bucket_width, side.back());
   }
 }
 
@@ -270,7 +272,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
         stations.push_back(station_at(frame, along, lanes));
       stations[first_of_group].has_others_beside = groups.size() > 1;
       if (!is_wide && groups.size() > 1 && i < more)
-        stations.back().shapes_from = along + step + farthest_of(machine) - overlap;
+        stations.back().shapes_from = along + step + farthest_of(machine) - shared;
     }
     add_between(frame, machine, stations);
   }

@@ -77,16 +77,12 @@ void LaneView::look_under_bucket(double bucket_width) {
   const auto inner = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
   floor_ = ground_at_ = top_ = ArrayXd::Zero(columns());
   std::vector<double> heights;
-  double falls = 0.0;
-  int known_falls = 0;
+  fall_ = ArrayXd::Constant(columns(), nan);
   for (Index col = 0; col < columns(); ++col) {
     double floor = -infinity, edge = -infinity;
     heights.clear();
     const auto under = target_.col(col).segment(first_row_, end_row_ - first_row_);
-    if (!under.isNaN().any()) {
-      falls += under.maxCoeff() - under.minCoeff();
-      ++known_falls;
-    }
+    if (under.size() > 0 && !under.isNaN().any()) fall_(col) = under.maxCoeff() - under.minCoeff();
     for (Index row = first_row_; row < end_row_; ++row) {
       const double z = surface_.z(row, col);
       const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
@@ -105,7 +101,6 @@ void LaneView::look_under_bucket(double bucket_width) {
     top_(col) = is_known ? mean_of(heights, std::max<Index>(1, known / top_part)) : nan;
     floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
   }
-  if (known_falls > 0) fall_ = falls / known_falls;
 }
 
 void LaneView::keep_above(double level) {

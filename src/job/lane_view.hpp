@@ -17,9 +17,10 @@ namespace excavplan {
 
 /// Where a dig begins: beside the swing axis and before it, along a line to the left of the view.
 struct DigStart {
-  double lane = 0.0;    ///< [m]
-  double along = 0.0;   ///< [m]
-  double turned = 0.0;  ///< [rad]
+  double lane = 0.0;     ///< [m]
+  double along = 0.0;    ///< [m]
+  double turned = 0.0;   ///< [rad]
+  bool is_pass = false;  ///< along the floor or a face
 };
 
 /// How the surface of a view changed.
@@ -55,8 +56,8 @@ class LaneView {
 
   /// Nothing is cut below that level, as if the design were no deeper [m].
   void keep_above(double level);
-  /// Mean fall of the design from one side of the bucket to the other [m].
-  double fall() const { return fall_; }
+  /// Of the design under the bucket, from its highest to its lowest cell [m]; NaN beside it.
+  double fall(Eigen::Index col) const { return fall_(col); }
   /// The highest of the design under the bucket; beside the design the ground. So much higher [m].
   GroundProfile floor(double allowance) const;
   /// Of the ground under the bucket, without the strips at its edges, which it may miss: its
@@ -86,8 +87,7 @@ class LaneView {
   Mask untouched_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
-  Eigen::ArrayXd floor_, ground_at_, top_;
-  double fall_ = 0.0;
+  Eigen::ArrayXd floor_, ground_at_, top_, fall_;
 };
 
 }  // namespace excavplan

@@ -192,6 +192,8 @@ struct SiteJob::State {
   std::optional<JobStep> best_step(Work work);
   bool has_steps() const { return volume_lane_step(frame) > 0.0; }
   bool may_pass() const;
+  /// Whether the bucket holds what is worth a dump.
+  bool has_load() const { return record.carried && record.carried->volume >= empty_bucket; }
   DigStart start_of(const JobStep& dig) const;
   void lay_aside(const JobStep& dig);
   void drop_present();
@@ -311,7 +313,7 @@ StepTask SiteJob::State::task_of(Work work, const DumpPlace& dump, const BasePos
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
-  task.carried = finishing && record.carried ? record.carried->volume : 0.0;
+  task.carried = finishing && has_load() ? record.carried->volume : 0.0;
   task.slack = 0.5 * settings.design.tolerance;
   return task;
 }
@@ -382,7 +384,9 @@ std::optional<JobStep> SiteJob::State::dig_step(Work work) {
     }
     lay_aside(*step);
   }
-  if (first_doubtful) record = std::move(with_it);
+  if (!first_doubtful) return first_doubtful;
+  record = std::move(with_it);
+  if (work == Work::faces) lay_aside(*first_doubtful);
   return first_doubtful;
 }
 
@@ -409,8 +413,9 @@ std::optional<JobStep> SiteJob::State::best_step(Work work) {
   step.dump = dump->place;
   if (dump->in_truck) step.truck = record.trucks;
   step.carried = record.carried;
-  step.dumps_first = record.carried && !finishing;
-  const bool is_empty = !record.carried && dig->dig.payload_volume < empty_bucket;
+  step.dumps_first = has_load() && !finishing;
+  const double held = record.carried ? record.carried->volume : 0.0;
+  const bool is_empty = held + dig->dig.payload_volume < empty_bucket;
   step.keeps_load = task.keeps_load && may_keep(dig->dig.payload_volume) &&
                     (is_empty || can_hold_load(settings.site.soil, step.path));
   const DumpPlace beside = seen_from(*dump, dig->turned);
@@ -487,7 +492,7 @@ bool SiteJob::State::may_keep(double more) const {
 
 /// What passes left in the bucket is dumped, and its last ones are seen.
 std::optional<JobStep> SiteJob::State::dump_step() {
-  if (!record.carried) return std::nullopt;
+  if (!has_load()) return std::nullopt;
   const auto dump = dump_place(settings, map, ground.expected(), record.base, {0.0, true});
   if (!dump) return std::nullopt;
   JobStep step =
@@ -618,8 +623,10 @@ JobStep SiteJob::State::decide() {
   if (stations[record.station].is_lookout()) return leave();
   if (ground.unseen_digs() >= most_unseen) return step_of(JobAction::scan, "to see what was dug");
   const bool is_wide = stations[record.station].is_wide;
-  if (is_wide && !record.carried && !stands_well()) return leave();
-  if (has_steps() && may_pass()) {
+  if (is_wide && !has_load() && !stands_well()) return leave();
+  if (has_steps() && ground.unseen_digs(JobAction::finish) >= most_unseen_passes_here())
+    return step_of(JobAction::scan, "to see what is left");
+  if (has_steps() && may_pass() && is_dug_out(record.base)) {
     if (auto step = dig_step(Work::faces)) return with_walls_checked(*std::move(step));
   }
   const bool leaves_floor = here().leaves_floor;
@@ -727,7 +734,7 @@ JobStep SiteJob::State::leave() {
     record.moves_to_dump = 0;
     return go_to(*place);
   }
-  if (record.carried) return step_of(JobAction::stop, "the soil in the bucket has no place");
+  if (has_load()) return step_of(JobAction::stop, "the soil in the bucket has no place");
   if (now.is_finished) return step_of(JobAction::stop, finished_reason);
   const std::string found = ": 95 % lie within " + readable(1e3 * now.p95, 2) + " mm, " +
                             readable(100.0 * now.beyond_twice, 2) +
@@ -759,7 +766,7 @@ void SiteJob::State::take_scan(const StepReport& report) {
 
 DigStart SiteJob::State::start_of(const JobStep& dig) const {
   const double view = frame_at(stations[record.station]).heading - dig.base.heading;
-  return {dig.lane, dig.path.start_x, wrapped(dig.swung - view)};
+  return {dig.lane, dig.path.start_x, wrapped(dig.swung - view), dig.what == JobAction::finish};
 }
 
 /// Until the machine stands elsewhere.
@@ -769,7 +776,8 @@ void SiteJob::State::lay_aside(const JobStep& dig) { record.barren.push_back(sta
 void SiteJob::State::drop_present() {
   if (record.present->digs() && !record.barren.empty()) {
     const DigStart start = start_of(*record.present), &last = record.barren.back();
-    if (last.lane == start.lane && last.along == start.along) record.barren.pop_back();
+    if (last.lane == start.lane && last.along == start.along && last.turned == start.turned)
+      record.barren.pop_back();
   }
   record.last_step = record.present->id;
   record.present.reset();
@@ -803,8 +811,7 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
                             : record.planned->payload_volume;
   const double held = record.carried ? record.carried->volume : 0.0;
   record.carried.reset();
-  if (step.keeps_load && held + volume > empty_bucket)
-    record.carried = {held + volume, record.rests_at};
+  if (step.keeps_load) record.carried = {held + std::max(0.0, volume), record.rests_at};
   if (step.truck) {
     record.truck_load += lifted;
     if (record.truck_load >= settings.design.truck->target_mass) {
@@ -836,6 +843,7 @@ void SiteJob::State::end_step(const StepReport& report) {
     if (!report.base) record.base = step.base;
     record.off_place = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
     record.has_arrived = true;
+    record.carried.reset();
     record.learning.move();
     ++record.progress.moves;
   }

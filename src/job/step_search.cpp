@@ -123,18 +123,19 @@ DigPath every_second(const DigPath& path) {
 
 /// A lane, and what all digs in it ask of its view.
 struct Lane {
-  Lane(const WorkLine& where, LaneView seen, double allowance)
+  Lane(const WorkLine& where, LaneView seen, const StepTask& task)
       : line(where),
         view(std::move(seen)),
-        floor(view.floor(allowance)),
+        floor(view.floor(task.allowance)),
         ground(view.top()),
         mean(view.mean()),
-        excess(view.excess(allowance)) {}
+        excess(view.excess(task.allowance)),
+        leans(task.has_steps &&
+              mean_over(line.near, line.far, [&](Index col) { return view.fall(col); }) > leaning) {
+  }
 
   /// Soil that stands over the rest of the lane there: a bucket cannot begin within it.
-  bool has_bank_at(double x) const { return !leans() && ground(x) - mean(x) > standing; }
-  /// Whether it runs along a face, on which one side of the bucket cuts.
-  bool leans() const { return view.fall() > leaning; }
+  bool has_bank_at(double x) const { return !leans && ground(x) - mean(x) > standing; }
   /// Of a value of each column, over a part of the lane; NaN if none of it is known.
   template <typename Value>
   double mean_over(double from, double to, Value value) const {
@@ -154,6 +155,7 @@ struct Lane {
   GroundProfile ground;   ///< that the bucket meets first
   GroundProfile mean;     ///< under all of the bucket
   Eigen::ArrayXd excess;  ///< of each column [m]
+  bool leans;             ///< it runs along a face, on which one side of the bucket cuts
 };
 
 class StepSearch {
@@ -172,7 +174,7 @@ class StepSearch {
       LaneView view(task.ground, task.map, dig_line(task.base, line.turned, line.lane),
                     extent(line), machine_.bucket.width_outside);
       if (task.bench) view.keep_above(*task.bench - task.base.z);
-      lanes_.emplace_back(line, std::move(view), task.allowance);
+      lanes_.emplace_back(line, std::move(view), task);
     }
   }
 
@@ -218,7 +220,7 @@ class StepSearch {
     }
     std::vector<std::size_t> order;
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
-      if (lanes_[lane].leans() || !task_.leaves_floor) order.push_back(lane);
+      if (lanes_[lane].leans || !task_.leaves_floor) order.push_back(lane);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return floor[a] > floor[b]; });
@@ -389,7 +391,7 @@ class StepSearch {
   /// Along the floor; where a bank stands in the lane by layers from its top, since the bucket
   /// cannot begin within it.
   void lay_out_passes(std::size_t lane) {
-    if (lanes_[lane].leans()) return lay_out_along_face(lane);
+    if (lanes_[lane].leans) return lay_out_along_face(lane);
     const GroundProfile& ground = lanes_[lane].mean;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
@@ -419,16 +421,17 @@ class StepSearch {
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
     const double last = at.line.near + least_pass * (at.line.far - at.line.near);
-    const std::size_t before = candidates_.size();
-    for (double start = at.line.far; start > last && candidates_.size() == before;
-         start -= face_step) {
+    bool is_laid_out = false;
+    for (double start = at.line.far; start > last && !is_laid_out; start -= face_step) {
       if (!is_worth_a_dig(at, start)) continue;
       lay_out_face(lane, start);
+      const std::size_t steep = candidates_.size();
       const double down = std::max(0.0, at.ground(start) - rules.floor(start));
       for (const double angle : face_angles) {
         const double drag = start - down / std::tan(angle) - nearest(at.line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
       }
+      is_laid_out = candidates_.size() > steep;
     }
   }
 
@@ -577,7 +580,7 @@ class StepSearch {
            const DigPathOptions& rules) {
     const Lane& at = lanes_[lane];
     if (is_barren(at, start)) return;
-    const bool is_even = task_.finishing && !at.leans() && !at.has_bank_at(start);
+    const bool is_even = task_.finishing && !at.leans && !at.has_bank_at(start);
     const GroundProfile& ground = is_even ? at.mean : at.ground;
     auto path = make_dig_path(machine_, parameters, start, ground, rules);
     auto* made = std::get_if<DigPath>(&path);
@@ -591,10 +594,11 @@ class StepSearch {
 
   bool is_barren(const Lane& lane, double start) const {
     const WorkLine& line = lane.line;
-    const double near = task_.finishing && lane.leans() ? line.far : same_start;
     return std::any_of(task_.barren.begin(), task_.barren.end(), [&](const DigStart& each) {
+      const bool is_done = task_.finishing && lane.leans && each.is_pass;  // all along it
       return std::abs(each.lane - line.lane) < same_lane &&
-             std::abs(each.turned - line.turned) < same_turn && std::abs(each.along - start) < near;
+             std::abs(each.turned - line.turned) < same_turn &&
+             (is_done || std::abs(each.along - start) < same_start);
     });
   }
 

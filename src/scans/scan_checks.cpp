@@ -264,7 +264,8 @@ double lost_beside_heap(const VolumeChange& change) {
   return lost;
 }
 
-/// Ours: a sensor on a mast stands no higher over one on the ground [m].
+/// The most that a scan lies above the one before, else its heights are of another datum or unit;
+/// ours: a sensor on a mast stands no higher over one on the ground [m].
 constexpr double most_above = 10.0;
 
 /// How far the scan after lies above the scan before where nothing changed, as it was given [m].

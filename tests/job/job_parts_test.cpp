@@ -485,7 +485,7 @@ TEST(LaneView, APassAlongAFaceShapesWhatItsEdgeComesTo) {
   const double width = job.settings.site.machine.bucket.width_outside;
   const LaneView view(ground, map, dig_line({0.0, 0.0, 0.0, 0.0}, 0.0, -1.0 + 0.5 * width),
                       {-2.0, -2.0, 12.0, 2.0}, width);
-  EXPECT_NEAR(view.fall(), 0.5 / 1.73, 0.07);
+  EXPECT_NEAR(view.fall(view.columns() / 2), 0.5 / 1.73, 0.07);
   TerrainPatch patch;
   const Terrain& seen = view.ground().terrain();
   patch.bank = seen.bank.z;
@@ -520,7 +520,8 @@ TEST(StepSearch, PassesAlongAFaceBeginAtItsTop) {
   EXPECT_EQ(dig->lane, 0.7);
   EXPECT_GT(dig->path.start_x, 5.9) << "all along at once";
   EXPECT_GT(dig->path.parameters.drag_length, 2.0);
-  const std::vector<DigStart> done = {{0.7, 4.0, 0.0}, {0.55, 6.0, 0.0}, {0.4, 6.0, 0.0}};
+  const std::vector<DigStart> done = {
+      {0.7, 4.0, 0.0, true}, {0.55, 6.0, 0.0, true}, {0.4, 6.0, 0.0, true}};
   StepTask next{job.settings, map, ground, base, {{4.5, 3.5, 3.0}, 1.57, 2.0, false}, done};
   next.lines = task.lines;
   next.finishing = next.has_faces = next.has_steps = true;

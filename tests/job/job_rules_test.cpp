@@ -114,6 +114,15 @@ TEST(JobRules, AWidePitTakesTwiceThePassesOfATrench) {
   EXPECT_NE(after_passes(PitJob(narrow), 0, 8), JobAction::finish);
 }
 
+TEST(JobRules, FacesOfGroundThatWasNotDugTakeNoPasses) {
+  PitJob trench(narrow, 0.4, [](PlainSiteFolder& of) {
+    of.site["design"]["wall_horizontal_per_vertical"] = 1.0;
+  });
+  ASSERT_FALSE(trench.stations.front().is_wide);
+  trench.stand_at(0);
+  EXPECT_EQ(trench.next().what, JobAction::dig);
+}
+
 TEST(JobRules, ATrenchWhoseWallsLeanBackTakesMore) {
   const auto lean = [](PlainSiteFolder& of) {
     of.site["design"]["wall_horizontal_per_vertical"] = 1.0;
@@ -178,12 +187,12 @@ TEST(JobRules, FacesAreShapedBeforeWhatFallsOffThemIsDug) {
   }
   trench.stand_at(5, [&](JobRecord& record) {
     for (const double lane : trench.stations[5].passes)
-      record.barren.push_back({lane - trench.stations[5].beside, 5.0, 0.0});
+      record.barren.push_back({lane - trench.stations[5].beside, 5.0, 0.0, true});
   });
   EXPECT_EQ(trench.next().what, JobAction::dig);
   trench.stand_at(4, [&](JobRecord& record) {
     for (const double lane : trench.stations[4].passes)
-      record.barren.push_back({lane - trench.stations[4].beside, 5.0, 0.0});
+      record.barren.push_back({lane - trench.stations[4].beside, 5.0, 0.0, true});
   });
   EXPECT_EQ(trench.next().what, JobAction::move) << "the soil is left to the other side";
 }
