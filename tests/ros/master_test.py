@@ -409,6 +409,7 @@ class Job(unittest.TestCase):
             refused = node.result()
             self.assertEqual(node.client.get_state(), GoalStatus.ABORTED)
             self.assertIn("posture_unknown: ", refused.message)
+            wait_until(lambda: node.trajectories, "a trajectory without points")
             self.assertEqual(node.trajectories[-1].points, [])
             for key in ("step", "what", "path", "dump", "predicted", "base"):
                 self.assertEqual(node.step[key], step[key], key)
