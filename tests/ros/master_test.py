@@ -230,7 +230,7 @@ class JobNode:
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.trajectories = []
         self.shown = []
-        self.step = None
+        self.steps = []
         self.angles = None
         self.standing = threading.Thread(target=self.send_joints)
         self.is_over = threading.Event()
@@ -242,13 +242,20 @@ class JobNode:
         }
         for topic, publisher in self.publishers.items():
             wait_until(lambda p=publisher: p.get_num_connections() > 0, f"{topic} to be heard")
-        wait_until(lambda: self.heard[0].get_num_connections() > 0, "the trajectory's topic")
+        for heard in self.heard:
+            wait_until(lambda h=heard: h.get_num_connections() > 0, f"the topic {heard.name}")
         self.client = actionlib.SimpleActionClient("/job/do_step", DoStepAction)
         if not self.client.wait_for_server(rospy.Duration(PATIENCE)):
             raise AssertionError("no server of the action")
 
     def take_step(self, message):
-        self.step = json.loads(message.data)
+        self.steps.append(json.loads(message.data))
+
+    @property
+    def step(self):
+        """The one that was shown last."""
+        wait_until(lambda: self.steps, "a step")
+        return self.steps[-1]
 
     def stand(self, angles):
         """From now on the joints stand there."""
