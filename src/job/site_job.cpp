@@ -328,7 +328,7 @@ std::vector<double> SiteJob::State::benches_below() const {
     if (!std::isnan(z)) top = std::max(top, z);
     low = std::min(low, map.target.z(cell.row, cell.col));
   });
-  const double height = volume_lane_step(frame) > 0.0 ? thin_bench : bench_height;
+  const double height = has_steps() ? thin_bench : bench_height;
   const int count = static_cast<int>(std::round((top - low) / height));
   for (int i = 1; i < count; ++i) benches.push_back(top - (top - low) * i / count);
   return benches;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <utility>
 
 #include <excavplan/job/job_motion.hpp>
 #include <excavplan/planning/planned_dig.hpp>
@@ -444,6 +445,16 @@ HandMadeJob leaning_trench() {
   return job;
 }
 
+/// Ground that is dug to so far over the design [m].
+Terrain dug_to(const JobMap& map, Terrain ground, double over) {
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    double& bank = ground.bank.z(at.row, at.col);
+    if (!std::isnan(target)) bank = std::min(bank, target + over);
+  });
+  return ground;
+}
+
 TEST(JobFrame, KnowsItsFloorBetweenFaces) {
   const HandMadeJob job = leaning_trench();
   const JobFrame frame = job.frame();
@@ -476,11 +487,7 @@ TEST(JobStations, TheFloorBetweenFacesIsShapedFromTheLastSide) {
 TEST(LaneView, APassAlongAFaceShapesWhatItsEdgeComesTo) {
   const HandMadeJob job = leaning_trench();
   const JobMap map = job.map();
-  Terrain ground = job.ground;
-  for_each_cell(map.target.z, [&](Cell at) {
-    const double target = map.target.z(at.row, at.col);
-    if (!std::isnan(target)) ground.bank.z(at.row, at.col) = std::min(0.0, target + 0.1);
-  });
+  const Terrain ground = dug_to(map, job.ground, 0.1);
   // The right edge of the bucket runs 1 m beside the middle of the trench.
   const double width = job.settings.site.machine.bucket.width_outside;
   const LaneView view(ground, map, dig_line({0.0, 0.0, 0.0, 0.0}, 0.0, -1.0 + 0.5 * width),
@@ -505,11 +512,7 @@ TEST(LaneView, APassAlongAFaceShapesWhatItsEdgeComesTo) {
 TEST(StepSearch, PassesAlongAFaceBeginAtItsTop) {
   const HandMadeJob job = leaning_trench();
   const JobMap map = job.map();
-  Terrain ground = job.ground;
-  for_each_cell(map.target.z, [&](Cell at) {
-    const double target = map.target.z(at.row, at.col);
-    if (!std::isnan(target)) ground.bank.z(at.row, at.col) = std::min(0.0, target + 0.08);
-  });
+  const Terrain ground = dug_to(map, job.ground, 0.08);
   const BasePose base = {3.0, 0.0, 0.0, 0.0};
   const std::vector<DigStart> none;
   StepTask task{job.settings, map, ground, base, {{4.5, 3.5, 3.0}, 1.57, 2.0, false}, none};
@@ -538,11 +541,7 @@ TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
   const JobFrame frame = work_frame(job.settings, map, job.ground);
   const JobStation station = stations_of(frame, job.settings)[2];
   constexpr double left = 0.06;  // on face and floor [m]
-  for_each_cell(map.target.z, [&](Cell at) {
-    const double target = map.target.z(at.row, at.col);
-    double& bank = job.ground.bank.z(at.row, at.col);
-    if (!std::isnan(target)) bank = std::min(bank, target + left);
-  });
+  job.ground = dug_to(map, std::move(job.ground), left);
   const BasePose base = base_at(frame, station, job.ground, job.settings.site.machine);
   const WorkRange range = work_range(frame, job.settings.site.machine, station.along);
   StepTask task{job.settings, map, job.ground, base, {{-2.0, -1.5, 2.4}, 1.0, 2.4, false}, {}};
