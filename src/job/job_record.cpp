@@ -184,7 +184,10 @@ Json learning_json(const JobLearning& learning) {
           learning.datum.scans};
 }
 
-JobLearning read_learning(const std::vector<double>& numbers) {
+JobLearning read_learning(JsonObject& object) {
+  const std::vector<double> numbers = object.numbers("learning", 16);
+  if (!(numbers[15] >= 1.0 && numbers[15] <= 1e9))
+    object.fail("learning", "ends in no count of scans");
   JobLearning learning;
   learning.height_bias = {numbers[0], numbers[1]};
   learning.payload = {numbers[2], numbers[3]};
@@ -287,7 +290,7 @@ JobRecord read_record(const std::string& path) {
   });
   for_each_number(record,
                   [&](const char* key, double& value) { value = object.number(key, -1e12, 1e12); });
-  record.learning = read_learning(object.numbers("learning", 16));
+  record.learning = read_learning(object);
   record.rests_at = read_joints(object, "rests_at_rad");
   if (object.has("off_place_m")) record.off_place = object.number("off_place_m", 0, 1e12);
   if (object.has("sent_again")) record.is_sent_again = object.flag("sent_again");

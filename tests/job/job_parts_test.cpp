@@ -1241,6 +1241,16 @@ TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   EXPECT_EQ(read.looks[1].half_sector, pi);
 }
 
+TEST(JobRecord, WithoutItsFirstScanIsRefused) {
+  const TemporaryFolder folder;
+  for (const int scans : {0, -1}) {
+    JobRecord record;
+    record.learning.datum.scans = scans;
+    save_record(folder.file(""), record);
+    EXPECT_THROW(load_record(folder.file("")), Error);
+  }
+}
+
 TEST(JobGround, WhatADigChangedIsNotSeenUntilAScanSeesIt) {
   const ShortTrench site;
   TrenchJob of{site};
