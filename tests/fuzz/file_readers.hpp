@@ -32,8 +32,9 @@ std::vector<FileReader> recording_readers();
 std::vector<FileReader> tool_readers();  ///< of what the tools take besides
 /// For the fuzz targets alone: tests/design has their bad files.
 std::vector<FileReader> design_readers();
+std::vector<FileReader> job_readers();  ///< likewise; jobs, sites and beliefs
 
-/// All but those of designs.
+/// All but those of designs and jobs.
 std::vector<FileReader> file_readers();
 /// @throws std::out_of_range if there is none of that name
 FileReader reader_of(const std::string& name);

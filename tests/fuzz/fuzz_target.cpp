@@ -73,7 +73,7 @@ std::vector<FuzzTarget> fuzz_targets() {
   std::vector<FuzzTarget> targets = {{"dig", fuzz_dig},
                                      {"volume_change", fuzz_volume_change},
                                      {"simulator_answer", fuzz_simulator_answer}};
-  for (const auto& readers : {file_readers(), design_readers()}) {
+  for (const auto& readers : {file_readers(), design_readers(), job_readers()}) {
     for (const FileReader& reader : readers) {
       targets.push_back(
           {reader.name, [reader](std::string_view bytes) { fuzz_reader(reader, bytes); }});
