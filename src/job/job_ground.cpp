@@ -242,7 +242,7 @@ void JobGround::forget() noexcept {
   }
 }
 
-void JobGround::load(long long number, long long updates) {
+void JobGround::load(long long number, long long updates, const UnseenDigs& since) {
   const bool is_reader = access_ == SiteAccess::read;
   if (site_.updates() > updates && !is_reader) site_.undo();
   const bool is_one_ahead = is_reader && site_.updates() == updates + 1;
@@ -254,6 +254,7 @@ void JobGround::load(long long number, long long updates) {
   }
   scanned_ = load_ground(file_of(number));
   begin_at_scan();
+  for (const JobStep& step : since.steps) expect(step, since.height_bias);
 }
 
 }  // namespace excavplan

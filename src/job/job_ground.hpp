@@ -37,6 +37,12 @@ struct ScanNews {
 DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const DigLine& line,
                     const DigPath& path);
 
+/// What was dug and dumped since the last scan.
+struct UnseenDigs {
+  const std::vector<JobStep>& steps;  ///< in their order
+  double height_bias;                 ///< of the edge over where it should be [m]
+};
+
 /// The site of a job with the digs that no scan has shown yet: where a scan does not see what was
 /// dug, it stays as foretold.
 class JobGround {
@@ -69,7 +75,7 @@ class JobGround {
   /// yet or any more, is taken back, or left alone by one who only reads.
   /// @param updates  that the site had taken in
   /// @throws Error (bad_file) if the site has taken in others
-  void load(long long number, long long updates);
+  void load(long long number, long long updates, const UnseenDigs& since);
   /// Takes the first scan back, as no job begins with it.
   void forget() noexcept;
   /// Of the last scan taken in.

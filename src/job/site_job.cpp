@@ -883,8 +883,8 @@ void SiteJob::State::save_changed(const JobRecord& before, const JobStep& step,
 /// The ground of the record.
 void SiteJob::State::restore() {
   log->cut(record);
-  ground.load(record.grounds, record.site_updates);
-  for (const JobStep& dig : record.unseen) ground.expect(dig, record.learning.height_bias.mean);
+  ground.load(record.grounds, record.site_updates,
+              {record.unseen, record.learning.height_bias.mean});
 }
 
 /// To what the folder holds. Where that cannot be read, or mended, nothing is done from then on.

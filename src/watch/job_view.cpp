@@ -15,6 +15,7 @@
 #include "job/job_log.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
+#include "watch/settled.hpp"
 
 namespace excavplan {
 namespace {
@@ -57,8 +58,7 @@ struct JobView::State {
   /// As another process expects it.
   JobGround ground_of(const JobRecord& of) const {
     JobGround expected(folder, settings, SiteAccess::read);
-    expected.load(of.grounds, of.site_updates);
-    for (const JobStep& dig : of.unseen) expected.expect(dig, of.learning.height_bias.mean);
+    expected.load(of.grounds, of.site_updates, {of.unseen, of.learning.height_bias.mean});
     return expected;
   }
   void read(const FileStamp& at) {
@@ -97,9 +97,9 @@ JobView::JobView(JobView&&) noexcept = default;
 JobView& JobView::operator=(JobView&&) noexcept = default;
 
 bool JobView::refresh() {
-  const FileStamp stamp = stamp_of(state_->folder + '/' + job_file);
-  if (state_->log && stamp == state_->stamp) return false;
-  state_->read(stamp);
+  const auto stamp = [&] { return stamp_of(state_->folder + '/' + job_file); };
+  if (state_->log && stamp() == state_->stamp) return false;
+  read_settled(stamp, [&](const FileStamp& at) { state_->read(at); });
   return true;
 }
 

@@ -7,6 +7,7 @@
 
 #include "job/trench_job.hpp"
 #include "support/errors.hpp"
+#include "watch/settled.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -66,6 +67,25 @@ TEST(JobView, FollowsAJobThatAnotherHolds) {
   EXPECT_LT(view.belief().payload.sd, sd) << "payloads were learnt from";
   EXPECT_EQ(view.rewritten(), 0);
   expect_same(JobView(of.path(), of.settings).history(), job.history());
+}
+
+TEST(JobView, ReadsAgainWhatChangedWhileItRead) {
+  const Error two_states(ErrorKind::bad_file, "job: of two states");
+  int state = 1, readings = 0;
+  read_settled([&] { return state; },
+               [&](int) {
+                 if (++readings == 3) return;
+                 ++state;
+                 throw two_states;
+               });
+  EXPECT_EQ(readings, 3);
+  const auto damaged = [&](int) {
+    ++readings;
+    throw two_states;
+  };
+  EXPECT_THROW(read_settled([] { return 1; }, damaged), Error);
+  EXPECT_EQ(readings, 4) << "of files that stay as they are once";
+  EXPECT_THROW(read_settled([&] { return ++state; }, damaged), Error);
 }
 
 TEST(JobView, SeesThatStepsAreTakenBack) {
