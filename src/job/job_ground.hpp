@@ -74,6 +74,7 @@ class JobGround {
   /// Goes on from what was written at that scan. A later one of the site, whose job was not written
   /// yet or any more, is taken back, or left alone by one who only reads.
   /// @param updates  that the site had taken in
+  /// @param since  expected on it
   /// @throws Error (bad_file) if the site has taken in others
   void load(long long number, long long updates, const UnseenDigs& since);
   /// Takes the first scan back, as no job begins with it.

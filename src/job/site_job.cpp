@@ -192,11 +192,13 @@ struct SiteJob::State {
   std::optional<JobStep> best_step(Work work);
   bool has_steps() const { return volume_lane_step(frame) > 0.0; }
   bool may_pass() const;
+  double held() const { return record.carried ? record.carried->volume : 0.0; }  ///< loose [m^3]
   /// Whether the bucket holds what is worth a dump.
-  bool has_load() const { return record.carried && record.carried->volume >= empty_bucket; }
+  bool has_load() const { return held() >= empty_bucket; }
   DigStart start_of(const JobStep& dig) const;
   void lay_aside(const JobStep& dig);
   void drop_present();
+  void close_present();
   std::vector<double> benches_below() const;
   std::vector<WorkLine> lines_on(double bench, const BasePose& straight) const;
   std::optional<StepDig> best_dig_of(StepTask& task, const std::vector<double>& benches);
@@ -313,7 +315,7 @@ StepTask SiteJob::State::task_of(Work work, const DumpPlace& dump, const BasePos
   task.strength_factor = record.learning.strength_factor();
   task.hard_factor = record.learning.hard_factor();
   task.deepest_cut = record.deepest_cut;
-  task.carried = finishing && has_load() ? record.carried->volume : 0.0;
+  task.carried = finishing && has_load() ? held() : 0.0;
   task.slack = 0.5 * settings.design.tolerance;
   return task;
 }
@@ -414,8 +416,7 @@ std::optional<JobStep> SiteJob::State::best_step(Work work) {
   if (dump->in_truck) step.truck = record.trucks;
   step.carried = record.carried;
   step.dumps_first = has_load() && !finishing;
-  const double held = record.carried ? record.carried->volume : 0.0;
-  const bool is_empty = held + dig->dig.payload_volume < empty_bucket;
+  const bool is_empty = held() + dig->dig.payload_volume < empty_bucket;
   step.keeps_load = task.keeps_load && may_keep(dig->dig.payload_volume) &&
                     (is_empty || can_hold_load(settings.site.soil, step.path));
   const DumpPlace beside = seen_from(*dump, dig->turned);
@@ -485,8 +486,8 @@ JobStep SiteJob::State::with_walls_checked(JobStep step) const {
 
 /// Whether another pass can follow before the bucket is dumped.
 bool SiteJob::State::may_keep(double more) const {
-  const double held = (record.carried ? record.carried->volume : 0.0) + more;
-  return !settings.design.truck && held <= most_carried * heaped_capacity(settings.site.machine) &&
+  return !settings.design.truck &&
+         held() + more <= most_carried * heaped_capacity(settings.site.machine) &&
          record.passes_here + 1 < most_passes_here();
 }
 
@@ -779,6 +780,10 @@ void SiteJob::State::drop_present() {
     if (last.lane == start.lane && last.along == start.along && last.turned == start.turned)
       record.barren.pop_back();
   }
+  close_present();
+}
+
+void SiteJob::State::close_present() {
   record.last_step = record.present->id;
   record.present.reset();
   record.planned.reset();
@@ -809,9 +814,9 @@ void SiteJob::State::end_dig(const JobStep& step, const StepReport& report) {
   const double volume = report.payload_mass && record.planned->payload_mass > 0.0
                             ? lifted * record.planned->payload_volume / record.planned->payload_mass
                             : record.planned->payload_volume;
-  const double held = record.carried ? record.carried->volume : 0.0;
+  const double before = held();
   record.carried.reset();
-  if (step.keeps_load) record.carried = {held + std::max(0.0, volume), record.rests_at};
+  if (step.keeps_load) record.carried = {before + std::max(0.0, volume), record.rests_at};
   if (step.truck) {
     record.truck_load += lifted;
     if (record.truck_load >= settings.design.truck->target_mass) {
@@ -852,9 +857,7 @@ void SiteJob::State::end_step(const StepReport& report) {
     if (!looks.empty()) record.looks = std::move(looks);
     take_scan(report);
   }
-  record.last_step = step.id;
-  record.present.reset();
-  record.planned.reset();
+  close_present();
 }
 
 void SiteJob::State::save() {
