@@ -35,6 +35,7 @@ constexpr double most_left = 0.5;          // of such faces, for another line of
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
 
+constexpr double widest_between = 0.47;    // likewise of passes over the ridges between lanes [m]
 constexpr double widest_for_volume = 1.6;  // likewise of a wide design [m]
 constexpr double widest_at_wall = 1.0;     // likewise of its passes: a bucket that is yawed further
                                            // turns its back into the wall as it curls [m]
@@ -140,18 +141,23 @@ void add_wide(const JobFrame& frame, double bucket_width, double along,
   }
 }
 
-/// Passes also run a little off the walls, as one that stands too far inside would stop them; and
-/// between lanes over the ridges there, unless these lie within the next lane: such a pass would
-/// only push soil against both walls.
-std::vector<double> lanes_of(const JobStation& station, double bucket_width, bool finishing) {
-  if (!finishing) return station.lanes;
-  if (!station.passes.empty()) return station.passes;
+/// With lanes over the ridges between them, unless these lie within the next lane: such a pass
+/// would only push soil against both walls.
+std::vector<double> over_ridges(const std::vector<double>& lanes, double bucket_width) {
   std::vector<double> all;
-  for (const double lane : station.lanes) {
+  for (const double lane : lanes) {
     const bool leaves_ridge = !all.empty() && lane - all.back() >= 0.5 * bucket_width;
     if (leaves_ridge) all.push_back(0.5 * (all.back() + lane));
     all.push_back(lane);
   }
+  return all;
+}
+
+/// Passes also run a little off the walls, as one that stands too far inside would stop them.
+std::vector<double> lanes_of(const JobStation& station, double bucket_width, bool finishing) {
+  if (!finishing) return station.lanes;
+  if (!station.passes.empty()) return station.passes;
+  std::vector<double> all = over_ridges(station.lanes, bucket_width);
   if (all.size() > 1) all.insert(all.end(), {all.front() + off_wall, all.back() - off_wall});
   return all;
 }
@@ -196,20 +202,26 @@ double last_of(const JobFrame& frame, const Machine& machine) {
 }
 
 /// A row of places once more, between where they were, where all lanes run up or down the faces:
-/// what a bucket loses beside its lanes lies where those of two places meet.
-void add_between(const JobFrame& frame, const Machine& machine, std::vector<JobStation>& stations) {
-  std::vector<double> lanes = lanes_of(frame, machine.bucket.width_outside);
+/// what a bucket loses beside its lanes lies where those of two places meet. So only the second
+/// time passes are made, over the ridges too.
+void add_between(const JobFrame& frame, const Machine& machine, std::size_t first_of_row,
+                 std::vector<JobStation>& stations) {
+  const std::vector<double> lanes = lanes_of(frame, machine.bucket.width_outside);
   if (!frame.is_battered || frame.faces_across > least_across || groups_of(lanes).size() < 2)
     return;
+  for (std::size_t i = first_of_row; i < stations.size(); ++i) stations[i].leaves_passes = true;
   const JobStation last = stations.back();
-  lanes.erase(lanes.begin(), lanes.begin() + 1);
-  auto groups = groups_of(lanes);
+  auto groups = groups_within(widest_between, over_ridges(lanes, machine.bucket.width_outside));
   if (last.beside > 0.5 * (frame.left + frame.right)) std::reverse(groups.begin(), groups.end());
   for (const auto& group : groups) {
-    stations.push_back(station_at(frame, last.along, group));
-    stations.back().is_again = true;
-    stations.back().has_others_beside = true;
-    stations.back().shapes_from = last.shapes_from;
+    JobStation station = station_at(frame, last.along, group);
+    station.passes = group;
+    if (group.front() == lanes.front()) station.passes.push_back(lanes.front() + off_wall);
+    if (group.back() == lanes.back()) station.passes.push_back(lanes.back() - off_wall);
+    station.is_again = true;
+    station.has_others_beside = true;
+    station.shapes_from = last.shapes_from;
+    stations.push_back(station);
   }
 }
 
@@ -263,6 +275,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   for (int i = 0; i <= more; ++i) {
     const double step = more == 0 ? 0.0 : (last - first) / more;
     const double along = first + step * i;
+    const std::size_t first_of_row = stations.size();
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
       const std::size_t first_of_group = stations.size();
@@ -274,7 +287,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
       if (!is_wide && groups.size() > 1 && i < more)
         stations.back().shapes_from = along + step + farthest_of(machine) - shared;
     }
-    add_between(frame, machine, stations);
+    add_between(frame, machine, first_of_row, stations);
   }
   return stations;
 }

@@ -74,6 +74,7 @@ constexpr double well_seen = 0.9905;         // of it, so that no more is looked
 constexpr int most_blocked = 4;   // digs from one place whose way is blocked, before it is left
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
 constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
+constexpr int softer_again = 1;   // likewise where the last dig stalled or lifted hardly any
 constexpr std::size_t looks_on_way = 3;      // to a place beyond the far end
 constexpr double near_well_seen = 0.996;     // then, as the far end will hide something too
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
@@ -303,7 +304,8 @@ StepTask SiteJob::State::task_of(Work work, const DumpPlace& dump, const BasePos
   StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
   task.lines = work_lines(line, here(), settings.site.machine, at, finishing);
   task.may_risk = record.progress.stalls == 0;
-  task.may_bite = !is_dug_out(record.base);
+  const bool passes_follow = here().leaves_passes && !here().is_wide;
+  task.may_bite = !passes_follow && !is_dug_out(record.base);
   task.finishing = finishing;
   task.has_others_beside = stations[record.station].has_others_beside;
   task.has_faces = frame.is_battered;
@@ -402,7 +404,8 @@ std::optional<JobStep> SiteJob::State::best_step(Work work) {
   StepTask task = task_of(work, *dump, straight);
   const std::vector<double> benches = finishing ? std::vector<double>() : benches_below();
   auto dig = best_dig_of(task, benches);
-  for (int softer = 1; !dig && !finishing && softer <= most_softer; ++softer) {
+  const int softest = finishing ? 0 : record.fruitless_digs > 0 ? softer_again : most_softer;
+  for (int softer = 1; !dig && softer <= softest; ++softer) {
     task.hard_factor = task.strength_factor;
     task.strength_factor = record.learning.strength_factor(-softer);
     dig = best_dig(task);

@@ -62,6 +62,7 @@ constexpr double least_at_wall = 0.06;    // likewise, counting what lies there 
 constexpr double least_lifted = 0.012;    // by a finishing pass [m^3]
 constexpr double standing = 0.05;        // of a bank in a lane over the mean ground of the lane [m]
 constexpr double least_finished = 0.06;  // that a pass brings within the tolerance [m^2]
+constexpr double least_of_many = 0.15;   // likewise of a design that has faces and many places
 constexpr double least_cleared = 0.015;  // or clears, for later ones [m^3]
 constexpr double wall_from = 0.5;        // before the end, soil that later digs would leave [m]
 constexpr double wall_to = 0.12;         // likewise [m]
@@ -91,7 +92,10 @@ constexpr double most_strength = 20.0;   // likewise
 constexpr int halvings = 6;              // of these bounds, by their logarithm
 constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
-constexpr Attitude steep_attitude = {1.1, false};                    // along the walls of a pit
+constexpr double least_slope = 0.1;      // of ground, to be dug along it [rad]
+const std::array<double, 5> slope_cuts = {0.05, 0.08, 0.12, 0.18, 0.26};  // below it [m]
+const std::array<double, 2> steeper_than_slope = {0.15, 0.3};  // of a dig than the ground [rad]
+constexpr Attitude steep_attitude = {1.1, false};              // along the walls of a pit
 const std::array<double, 4> finish_angles = {0.05, 0.1, 0.2, 0.35};  // likewise
 const std::array<double, 2> face_angles = {0.2, 0.35};               // likewise along a face
 constexpr double face_step = 0.1;                                    // likewise between starts [m]
@@ -350,6 +354,7 @@ class StepSearch {
       if (task_.has_others_beside || task_.bench)
         lay_out_layers(lane, start, std::array{steep_attitude}, rules_in(lane));
       lay_out_face(lane, start);
+      lay_out_along_slope(lane, start);
     }
   }
 
@@ -385,6 +390,28 @@ class StepSearch {
                       rules);
       }
       rules.drag_keeps_angle = false;
+      lay_out_along_slope(lane, start);
+    }
+  }
+
+  /// Layers of even depth below ground that falls towards the machine: level ones meet all of its
+  /// height at once, or none of it.
+  void lay_out_along_slope(std::size_t lane, double start) {
+    const Lane& at = lanes_[lane];
+    const double slope = (at.mean(start) - at.mean(start - level_to)) / level_to;
+    const double grade = std::atan(slope);
+    if (!(grade > least_slope) || grade + steeper_than_slope.back() > steepest_drag) return;
+    DigPathOptions rules = rules_in(lane);
+    rules.drag_keeps_angle = true;
+    for (const double cut : slope_cuts) {
+      rules.floor = [&at, cut](double x) { return std::fmax(at.floor(x), at.mean(x) - cut); };
+      for (const double more : steeper_than_slope) {
+        const double angle = grade + more;
+        rules.drag_grade = grade + 0.5 * more;
+        const double down = at.ground(start) - at.mean(start) + cut;
+        const double from = start - down / (std::tan(angle) - slope);
+        add_drags(lane, {angle, 1.0, 0.0}, {start, from}, rules.floor, rules);
+      }
     }
   }
 
@@ -459,17 +486,13 @@ class StepSearch {
       rules.drag_grade = face + 0.5 * more;
       if (rules.drag_grade > steepest_drag) break;
       const double from = start - down / std::tan(angle);
-      const double longest = from - nearest(lanes_[lane].line, angle);
-      double last = 0.0;
-      for (const double fill : fills) {
-        const double drag =
-            task_.finishing
-                ? longest
-                : std::min(drag_that_fills(lanes_[lane], {from, lowest}, fill), longest);
-        if (drag == last || !(drag > shortest_drag)) break;
-        add(lane, {angle, 1.0, drag}, start, rules);
-        last = drag;
+      if (!task_.finishing) {
+        add_drags(
+            lane, {angle, 1.0, 0.0}, {start, from}, [](double) { return lowest; }, rules);
+        continue;
       }
+      const double longest = from - nearest(lanes_[lane].line, angle);
+      if (longest > shortest_drag) add(lane, {angle, 1.0, longest}, start, rules);
     }
   }
 
@@ -521,16 +544,30 @@ class StepSearch {
 
   void lay_out_layer(std::size_t lane, double start, const Layer& layer,
                      const DigPathOptions& rules) {
-    double last = 0.0;
     const double from = start - layer.depth / std::tan(layer.angle);
-    const double longest = from - nearest(lanes_[lane].line, layer.angle);
+    add_drags(
+        lane, {layer.angle, layer.depth / std::sin(layer.angle), 0.0}, {start, from},
+        [&](double) { return layer.height; }, rules);
+  }
+
+  /// Where a dig begins, and its drag [m].
+  struct Begin {
+    double start;
+    double drag;
+  };
+
+  /// With drags that fill the bucket, by the soil above a height of each x, or as long as can be.
+  template <typename Height>
+  void add_drags(std::size_t lane, DigParameters dig, const Begin& at, Height height,
+                 const DigPathOptions& rules) {
+    const double longest = at.drag - nearest(lanes_[lane].line, dig.penetration_angle);
     if (!(longest > shortest_drag)) return;
+    double last = 0.0;
     for (const double fill : fills) {
-      const double drag =
-          std::min(drag_that_fills(lanes_[lane], {from, layer.height}, fill), longest);
-      if (drag == last) break;
-      add(lane, {layer.angle, layer.depth / std::sin(layer.angle), drag}, start, rules);
-      last = drag;
+      dig.drag_length = std::min(drag_that_fills(lanes_[lane], at.drag, height, fill), longest);
+      if (dig.drag_length == last) break;
+      add(lane, dig, at.start, rules);
+      last = dig.drag_length;
     }
   }
 
@@ -553,15 +590,10 @@ class StepSearch {
            lane.excess(col) > (task_.finishing ? least_ridge : least_excess);
   }
 
-  struct DragStart {
-    double x;       ///< [m]
-    double height;  ///< [m]
-  };
-
-  /// The length of a drag at this height that meets so much soil.
-  double drag_that_fills(const Lane& lane, const DragStart& start, double fill) const {
+  /// The length of a drag above a height of each x that meets so much soil.
+  template <typename Height>
+  double drag_that_fills(const Lane& lane, double from, Height height, double fill) const {
     const LaneView& view = lane.view;
-    const auto [from, height] = start;
     const double cell = view.surface().cell_size;
     const double wanted = fill * capacity_ / bulking() / machine_.bucket.width_outside;
     double met = 0.0;
@@ -569,7 +601,7 @@ class StepSearch {
     while (met < wanted && x > lane.line.near) {
       const auto col = static_cast<Index>((x - view.x(0)) / cell);
       if (col < 0 || col >= view.columns()) break;
-      const double above = view.ground_at(col) - height;
+      const double above = view.ground_at(col) - height(x);
       if (above > 0.0) met += cell * std::min(above, lane.excess(col));
       x -= cell;
     }
@@ -717,8 +749,11 @@ class StepSearch {
   /// Less is not worth a cycle.
   bool is_enough(const StepDig& step, Aim aim) const {
     const ShapeChange& change = step.change;
-    if (aim == Aim::shape)
-      return change.finished > least_finished || change.cleared > least_cleared;
+    if (aim == Aim::shape) {
+      const bool has_many = task_.has_faces && task_.has_others_beside;
+      return change.finished > (has_many ? least_of_many : least_finished) ||
+             change.cleared > least_cleared;
+    }
     if (aim == Aim::volume) return gained_by(step) > least_of_volume();
     if (aim == Aim::hard) return change.gained > least_in_hard * capacity_;
     if (task_.finishing) return change.at_end > least_lifted;

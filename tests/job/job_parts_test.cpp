@@ -59,19 +59,6 @@ struct HandMadeJob {
   JobSettings settings;
 };
 
-/// The widest gap beside the lanes of all stations but the last row's, or with those between.
-double farthest_between(const std::vector<JobStation>& stations, bool with_between) {
-  std::vector<double> ends;
-  for (const JobStation& each : stations) {
-    if (each.is_again && !with_between) continue;
-    ends.push_back(each.beside);
-  }
-  std::sort(ends.begin(), ends.end());
-  double widest = 0.0;
-  for (std::size_t i = 1; i < ends.size(); ++i) widest = std::max(widest, ends[i] - ends[i - 1]);
-  return widest;
-}
-
 TEST(JobMap, HoldsTheDesignWhereItIs) {
   const HandMadeJob job;
   const JobMap map = job.map();
@@ -409,12 +396,26 @@ TEST(JobStations, OfAFaceAheadAreMetBetweenAgain) {
   const JobMap map = job.map();
   const JobFrame frame = work_frame(job.settings, map, job.ground);
   const auto stations = stations_of(frame, job.settings);
-  const double far = farthest_between(stations, false), between = farthest_between(stations, true);
-  EXPECT_GT(far, 1.0);
-  EXPECT_LT(between, 0.7 * far) << "ridges between two places lie in no lane";
   EXPECT_GT(stations.front().shapes_from, frame.near);
   EXPECT_LT(stations.back().shapes_from, frame.near);
   for (const JobStation& each : stations) EXPECT_TRUE(each.has_others_beside);
+  // Passes only then, each in one place of its row: along all lanes and over the ridges between.
+  std::vector<double> passes;
+  for (const JobStation& each : stations) {
+    EXPECT_EQ(each.leaves_passes, !each.is_again);
+    if (!each.is_again || each.along != stations.front().along) continue;
+    for (const double pass : each.passes) {
+      EXPECT_LT(std::abs(pass - each.beside), 0.5) << "the bucket is hardly yawed";
+      passes.push_back(pass);
+    }
+  }
+  std::sort(passes.begin(), passes.end());
+  for (std::size_t i = 1; i < passes.size(); ++i) {
+    EXPECT_GT(passes[i] - passes[i - 1], 1e-6);
+    EXPECT_LT(passes[i] - passes[i - 1], 0.5 * zx120().bucket.width_outside);
+  }
+  EXPECT_NEAR(passes.front(), stations.front().lanes.front(), 1e-9);
+  EXPECT_NEAR(passes.back(), frame.left + frame.right - passes.front(), 1e-9);
   const HandMadeJob narrow(10.0, 1.2);
   for (const JobStation& each : stations_of(narrow.frame(), narrow.settings))
     EXPECT_FALSE(each.has_others_beside);
@@ -552,6 +553,29 @@ TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
   ASSERT_TRUE(dig.has_value());
   EXPECT_GT(dig->change.cleared, 0.6 * left * 0.7 * 0.6);
   EXPECT_LT(dig->change.too_deep, 0.005);
+}
+
+/// Of a floor in shape but for a place so long, 2 cm above what may stay [m].
+std::optional<StepDig> pass_over_bump(double length, bool has_many) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  job.ground = dug_to(map, std::move(job.ground), 0.0);
+  for_each_cell(job.ground.bank.z, [&](Cell at) {
+    const double x = job.ground.bank.x(at.col), y = job.ground.bank.y(at.row);
+    if (std::abs(y) < 0.2 && x > 7.5 && x < 7.5 + length) job.ground.bank.z(at.row, at.col) += 0.05;
+  });
+  StepTask task{
+      job.settings, map, job.ground, {3.0, 0.0, 0.0, 0.0}, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  task.lines = {{0.0, 0.0, 2.95, 6.0}};
+  task.finishing = true;
+  task.has_faces = task.has_others_beside = has_many;
+  return best_dig(task);
+}
+
+TEST(StepSearch, APassOfADesignOfManyPlacesBringsMoreIntoShape) {
+  EXPECT_TRUE(pass_over_bump(0.3, false));
+  EXPECT_FALSE(pass_over_bump(0.3, true));
+  EXPECT_TRUE(pass_over_bump(0.6, true));
 }
 
 /// The first dig at the far end of a trench that is dug up to so far before it [m].
@@ -946,6 +970,31 @@ TEST(StepSearch, BitesWhereNoFlatCutIsStrongEnough) {
   EXPECT_GT(hard->signs.stalls_at, 4.0);
   EXPECT_LT(hard->signs.stalls_at, 20.0);
   EXPECT_FALSE(dig_in_soil(job, 4.0, false));  // where passes are to take what is left
+}
+
+/// Of the ground before a machine that falls towards it by so much, as hard soil.
+std::optional<StepDig> dig_on_slope(double slope) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  for_each_cell(job.ground.bank.z, [&](Cell at) {
+    const double x = job.ground.bank.x(at.col);
+    job.ground.bank.z(at.row, at.col) = std::clamp(slope * (x - 6.0), 0.0, 0.6);
+  });
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  StepTask task{job.settings, map, job.ground, base, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  task.lines = {{0.0, 0.0, 2.95, 6.0}};
+  task.strength_factor = 2.0;
+  task.hard_factor = 2.1;
+  return best_dig(task);
+}
+
+TEST(StepSearch, HardGroundThatFallsTowardsTheMachineIsDugAlongItsSlope) {
+  const auto level = dig_on_slope(0.0), falling = dig_on_slope(0.2);
+  ASSERT_TRUE(level && falling);
+  EXPECT_EQ(level->path.drag_grade, 0.0);
+  EXPECT_GT(falling->path.drag_grade, 0.15);
+  EXPECT_GT(falling->dig.payload_mass, 140.0);
+  EXPECT_FALSE(falling->may_stall);
 }
 
 TEST(StepSearch, APassThatIsCountedOnDoesNotStallInGroundThatIsHigher) {

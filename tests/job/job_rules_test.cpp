@@ -242,6 +242,45 @@ TEST(JobRules, ABenchIsLeftForTheNextWhereOnlyABiteWouldTakeIt) {
   EXPECT_GT(step.predicted.payload_mass, 300.0);
 }
 
+/// Of soil that is believed to be so many times as strong, after so many digs in vain.
+std::function<void(JobRecord&)> in_hard_soil(double factor, int digs_in_vain) {
+  return [=](JobRecord& record) {
+    record.learning.strength = {std::log(factor), 0.01};
+    record.fruitless_digs = digs_in_vain;
+  };
+}
+
+TEST(JobRules, SoilIsHopedToBeMuchSofterThanBelievedOnce) {
+  PitJob trench(narrow);
+  trench.stand_at(0, in_hard_soil(12.0, 0));
+  EXPECT_EQ(trench.next().what, JobAction::dig);
+  trench.stand_at(0, in_hard_soil(12.0, 1));
+  EXPECT_NE(trench.next().what, JobAction::dig);
+}
+
+/// A cut with a face to its left, from a machine at its foot.
+void with_face_ahead(PlainSiteFolder& site) {
+  site.site["design"] = {{"kind", "slope cut"},        {"length_m", 5.0},
+                         {"floor_width_m", 3.5},       {"face_horizontal_per_vertical", 1.5},
+                         {"origin_m", {-1.5, 3.5}},    {"heading_rad", 0.0},
+                         {"floor_z_at_middle_m", -0.3}};
+  site.site["start_pose"] = {{"x", 1.0}, {"y", -2.5}, {"heading_rad", 0.0}};
+  site.site["dump_areas"] = {
+      {{"kind", "windrow"}, {"polygon", {{-6.0, -4.0}, {-2.2, -4.0}, {-2.2, 3.0}, {-6.0, 3.0}}}},
+      {{"kind", "windrow"}, {"polygon", {{4.2, -4.0}, {8.0, -4.0}, {8.0, 3.0}, {4.2, 3.0}}}}};
+}
+
+TEST(JobRules, SmallBitesAreLeftToTheRowThatMakesPasses) {
+  PitJob slope(narrow, 0.3, with_face_ahead);
+  ASSERT_TRUE(slope.stations.front().leaves_passes);
+  slope.stand_at(0, in_hard_soil(5.0, 1));
+  EXPECT_EQ(slope.next().what, JobAction::move);
+  const auto again = std::find_if(slope.stations.begin(), slope.stations.end(),
+                                  [](const JobStation& each) { return each.is_again; });
+  slope.stand_at(static_cast<std::size_t>(again - slope.stations.begin()), in_hard_soil(5.0, 1));
+  EXPECT_EQ(slope.next().what, JobAction::dig);
+}
+
 /// The dig from where the front swings over ground beside the pit that no scan saw, from here on.
 struct BesideUnseen : PitJob {
   explicit BesideUnseen(double from)
