@@ -773,8 +773,7 @@ class StepSearch {
 }  // namespace
 
 bool can_hold_load(const SoilKind& soil, const DigPath& path) {
-  const double floor = path.parameters.penetration_angle + path.heel_clearance;
-  return floor <= holding * soil.angle_of_repose;
+  return path.poses.front().bucket.floor_angle <= holding * soil.angle_of_repose;
 }
 
 DumpPlace seen_from(DumpPlace dump, double turned) {

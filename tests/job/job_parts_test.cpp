@@ -1370,6 +1370,23 @@ TEST(JobMotion, TheToothStaysOnItsLane) {
   EXPECT_LT((motion.points.front().joints - motion.points.back().joints).norm(), 1e-6);
 }
 
+TEST(StepSearch, ABucketHoldsSoilWhereADigBeginsFlatterThanThatRests) {
+  const SoilKind loam = load_soil(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/loam.json");
+  DigPathOptions pass;
+  pass.floor = [](double) { return -0.1; };
+  pass.drag_keeps_angle = true;
+  pass.penetration_clearance = 0.12;
+  const auto holds = [&](double angle) {
+    const auto path = make_dig_path(
+        zx120(), {angle, 1.0, 1.0}, 5.5, [](double) { return 0.0; }, pass);
+    return can_hold_load(loam, std::get<DigPath>(path));
+  };
+  const double rests = 0.9 * loam.angle_of_repose - pass.penetration_clearance;
+  EXPECT_TRUE(holds(0.1));
+  EXPECT_TRUE(holds(rests - 0.01));
+  EXPECT_FALSE(holds(rests + 0.01));
+}
+
 TEST(JobMotion, ALoadThatIsKeptGoesBackWithoutADump) {
   const HandMadeJob job;
   JobStep step;
