@@ -75,6 +75,7 @@ constexpr int most_blocked = 4;   // digs from one place whose way is blocked, b
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
 constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
 constexpr int softer_again = 1;   // likewise where the last dig stalled or lifted hardly any
+constexpr std::size_t most_looks = 4;        // at the end, and once more
 constexpr std::size_t looks_on_way = 3;      // to a place beyond the far end
 constexpr double near_well_seen = 0.996;     // then, as the far end will hide something too
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
@@ -88,6 +89,16 @@ bool is_one_group(const std::vector<JobStation>& stations) {
   return std::all_of(stations.begin(), stations.end(), [&](const JobStation& each) {
     return each.beside == stations.front().beside;
   });
+}
+
+/// The places of rows that were gone along twice already, from the last one back, for what little
+/// is left there.
+std::vector<JobStation> once_more(const std::vector<JobStation>& stations) {
+  std::vector<JobStation> again;
+  std::copy_if(stations.rbegin(), stations.rend(), std::back_inserter(again),
+               [](const JobStation& each) { return each.is_again && !each.is_wide; });
+  for (JobStation& each : again) each.has_others_beside = false;
+  return again;
 }
 
 /// What a dig is for.
@@ -137,9 +148,11 @@ struct SiteJob::State {
         ends.insert(ends.end(), beyond.begin(), beyond.end());
       }
     }
-    stations.insert(stations.end(), ends.begin(), ends.end());
-    stations.insert(stations.end(),
-                    {lookout, lookout, lookout, lookout, last, lookout, lookout, lookout, lookout});
+    const std::vector<JobStation> looks(most_looks, lookout);
+    std::vector<JobStation> again = once_more(stations);
+    if (again.empty()) again.push_back(last);
+    for (const auto& more : {ends, looks, again, looks})
+      stations.insert(stations.end(), more.begin(), more.end());
   }
 
   /// In the frame of the ground as it is known.

@@ -281,6 +281,28 @@ TEST(JobRules, SmallBitesAreLeftToTheRowThatMakesPasses) {
   EXPECT_EQ(slope.next().what, JobAction::dig);
 }
 
+TEST(JobRules, WhatTwoRowsLeaveOfAFaceIsShapedOnceMoreAtTheEnd) {
+  constexpr std::size_t last_look = 3;  // of four after all places
+  for (const double left : {0.0, 0.08}) {
+    PitJob slope(narrow, 0.3, with_face_ahead);
+    slope.see([left](double x, double y) {
+      if (x < -1.5 || x > 3.5 || y < 0.0) return 0.0;
+      const double design = std::min(-0.3 + std::max(0.0, y - 3.5) / 1.5, 0.0);
+      return x > 1.0 && x < 2.0 ? std::min(design + left, 0.0) : design;
+    });
+    slope.stand_at(0,
+                   [&](JobRecord& record) { record.station = slope.stations.size() + last_look; });
+    const JobStep step = slope.next();
+    if (left == 0.0) {
+      EXPECT_EQ(step.what, JobAction::stop);
+      continue;
+    }
+    EXPECT_EQ(step.what, JobAction::move);
+    EXPECT_NEAR(step.base.x, 1.5, 0.6);
+    EXPECT_TRUE(slope.record().station > slope.stations.size() + last_look);
+  }
+}
+
 /// The dig from where the front swings over ground beside the pit that no scan saw, from here on.
 struct BesideUnseen : PitJob {
   explicit BesideUnseen(double from)
