@@ -20,6 +20,7 @@ constexpr double strength_reading =
     0.3;                           // sd of ln of the energy, as the simulator and the path are off
 constexpr double stall_sd = 0.25;  // of ln of the strength at which a dig stalls, likewise
 constexpr double least_likelihood = 1e-6;  // of a stall or none
+constexpr double chance_of_stall = 0.05;   // whatever the strength: the edge met ground not seen
 constexpr double least_share_left = 0.05;  // of a variance after one
 constexpr double least_doubt = 0.25;       // about ln of the strength, from place to place
 constexpr double least_fill = 0.3;         // of a bucket that teaches anything
@@ -46,16 +47,20 @@ void LearntNumber::learn(double reading, double reading_variance) {
   variance *= 1.0 - gain;
 }
 
-void LearntNumber::learn_bound(double bound, bool is_above, double bound_variance) {
+void LearntNumber::learn_bound(double bound, bool is_above, double bound_variance,
+                               double chance_of_else) {
   const double spread = std::sqrt(variance + bound_variance);
   const double sign = is_above ? 1.0 : -1.0;
   const double z = sign * (mean - bound) / spread;
   const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * pi);
-  const double ratio = density / std::max(normal_cdf(z), least_likelihood);
-  const double known = variance;
-  mean += sign * known / spread * ratio;
-  variance -= known * known / (spread * spread) * ratio * (z + ratio);
-  variance = std::max(variance, least_share_left * known);
+  const double likelihood = std::max(normal_cdf(z), least_likelihood);
+  const double ratio = density / likelihood;
+  const double moved = sign * variance / spread * ratio;
+  const double less = variance * variance / (spread * spread) * ratio * (z + ratio);
+  const double left = std::max(variance - less, least_share_left * variance);
+  const double of_else = chance_of_else / (chance_of_else + (1.0 - chance_of_else) * likelihood);
+  mean += (1.0 - of_else) * moved;
+  variance = of_else * variance + (1.0 - of_else) * (left + of_else * moved * moved);
 }
 
 void ScanDatum::learn(const Alignment& scan) {
@@ -84,7 +89,8 @@ ForetoldStep JobLearning::foretell(const PlannedDig& dig) const {
 void JobLearning::learn(const PlannedDig& dig, const StrengthSigns& signs,
                         const StepReport& report) {
   if (signs.stalls_at > 0.0)
-    strength.learn_bound(std::log(signs.stalls_at), report.stalled, stall_sd * stall_sd);
+    strength.learn_bound(std::log(signs.stalls_at), report.stalled, stall_sd * stall_sd,
+                         report.stalled ? chance_of_stall : 0.0);
   if (report.stalled) return;
   if (dig.fill < least_fill) return;
   if (report.payload_mass && *report.payload_mass > 0.0) {

@@ -22,7 +22,8 @@ struct LearntNumber {
   void learn(double reading, double reading_variance);
   /// That it lies above a bound that itself has a normal error, or below (by moments of the
   /// posterior of a probit: Rasmussen and Williams, Gaussian Processes, 2006, 3.9).
-  void learn_bound(double bound, bool is_above, double bound_variance);
+  /// @param chance_of_else  that what tells it has another cause and says nothing, in 0 .. 1
+  void learn_bound(double bound, bool is_above, double bound_variance, double chance_of_else = 0.0);
   double sd() const;
 };
 

@@ -904,19 +904,32 @@ TEST(LearntNumber, ABoundMovesItByTheMomentsOfItsPosterior) {
   // Against the posterior summed on a grid.
   const double variance = 0.4, error = 0.06, bound = 0.5;
   for (const bool is_above : {true, false}) {
-    double sum = 0.0, first = 0.0, second = 0.0;
-    for (double x = -5.0; x < 5.0; x += 1e-3) {
-      const double below = normal_cdf((x - bound) / std::sqrt(error));
-      const double weight = std::exp(-0.5 * x * x / variance) * (is_above ? below : 1.0 - below);
-      sum += weight;
-      first += weight * x;
-      second += weight * x * x;
+    for (const double other : {0.0, 0.2}) {
+      double sum = 0.0, first = 0.0, second = 0.0;
+      for (double x = -5.0; x < 5.0; x += 1e-3) {
+        const double below = normal_cdf((x - bound) / std::sqrt(error));
+        const double likelihood = other + (1.0 - other) * (is_above ? below : 1.0 - below);
+        const double weight = std::exp(-0.5 * x * x / variance) * likelihood;
+        sum += weight;
+        first += weight * x;
+        second += weight * x * x;
+      }
+      LearntNumber number = {0.0, variance};
+      number.learn_bound(bound, is_above, error, other);
+      EXPECT_NEAR(number.mean, first / sum, 1e-6) << is_above << " " << other;
+      EXPECT_NEAR(number.variance, second / sum - first * first / (sum * sum), 1e-6) << other;
     }
-    LearntNumber number = {0.0, variance};
-    number.learn_bound(bound, is_above, error);
-    EXPECT_NEAR(number.mean, first / sum, 1e-6) << is_above;
-    EXPECT_NEAR(number.variance, second / sum - first * first / (sum * sum), 1e-6) << is_above;
   }
+}
+
+TEST(JobLearning, AStallThatOnlyMuchStrongerSoilWouldExplainHasAnotherCause) {
+  JobLearning learnt;
+  StepReport report;
+  report.stalled = true;
+  for (int i = 0; i < 6; ++i) learnt.learn({}, {0.0, 15.0}, report);
+  EXPECT_LT(learnt.strength_factor(), 1.5);
+  for (int i = 0; i < 3; ++i) learnt.learn({}, {0.0, 1.6}, report);
+  EXPECT_GT(learnt.strength_factor(), 1.6);
 }
 
 TEST(StepSearch, TheBucketCurlsWithinItsViewWhereTheWorkIsFarAhead) {
