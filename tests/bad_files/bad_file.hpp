@@ -31,6 +31,9 @@ using BadFiles = std::vector<BadFile>;
 /// Small files of a format (FileReader::name) that are right, at least one.
 std::vector<std::string> valid_files(const std::string& format);
 
+/// The same of job_readers().
+std::vector<std::string> valid_job_files(const std::string& format);
+
 /// All bad files of a format.
 BadFiles bad_files(const std::string& format);
 

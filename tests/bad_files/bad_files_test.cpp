@@ -46,6 +46,15 @@ TEST_P(BadFiles, AreMany) {
   EXPECT_GE(test::bad_files(GetParam().name).size(), is_cloud ? 100U : 40U);
 }
 
+TEST(ValidJobFiles, AreRead) {
+  const test::TemporaryFolder folder;
+  for (const FileReader& reader : test::job_readers()) {
+    for (const std::string& bytes : test::valid_job_files(reader.name)) {
+      EXPECT_NO_THROW(reader.read(folder.write(reader.name, bytes))) << reader.name;
+    }
+  }
+}
+
 // Its reader puts grids beside a file.
 TEST(BadPlainGround, WithoutANameLeavesNothingWhereTheProgramRuns) {
   namespace fs = std::filesystem;

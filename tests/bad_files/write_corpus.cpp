@@ -21,6 +21,15 @@ void write(const std::string& folder, int number, const std::string& bytes) {
   std::ofstream(folder + "/valid-" + std::to_string(number), std::ios::binary) << bytes;
 }
 
+void write(const std::string& folder, const excavplan::test::FileReader& reader,
+           const std::vector<std::string>& files) {
+  int number = 0;
+  for (std::string bytes : files) {
+    if (reader.sealed) bytes.resize(bytes.size() - excavplan::sealed("").size());
+    write(folder + "/" + reader.name, ++number, bytes);
+  }
+}
+
 std::string drawn(std::uint64_t seed) {
   excavplan::Random random(seed);
   std::string bytes;
@@ -62,11 +71,10 @@ int main(int argc, char** argv) {
   }
   const std::string folder = argv[1];
   for (const test::FileReader& reader : test::file_readers()) {
-    int number = 0;
-    for (std::string bytes : test::valid_files(reader.name)) {
-      if (reader.sealed) bytes.resize(bytes.size() - sealed("").size());
-      write(folder + "/" + reader.name, ++number, bytes);
-    }
+    write(folder, reader, test::valid_files(reader.name));
+  }
+  for (const test::FileReader& reader : test::job_readers()) {
+    write(folder, reader, test::valid_job_files(reader.name));
   }
   write(folder + "/plain_site", 1, plain_site);
   int number = 0;

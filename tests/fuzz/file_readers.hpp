@@ -13,6 +13,10 @@
 
 /// @file All that excavplan reads, by kind of file, for the fuzz targets and the bad files.
 
+namespace excavplan {
+struct JobHistory;
+}
+
 namespace excavplan::test {
 
 /// A kind of file and what reads it.
@@ -33,6 +37,7 @@ std::vector<FileReader> tool_readers();  ///< of what the tools take besides
 /// For the fuzz targets alone: tests/design has their bad files.
 std::vector<FileReader> design_readers();
 std::vector<FileReader> job_readers();  ///< likewise; jobs, sites and beliefs
+JobHistory job_on_flat_ground();        ///< that a log is read of
 
 /// All but those of designs and jobs.
 std::vector<FileReader> file_readers();

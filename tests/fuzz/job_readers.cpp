@@ -37,14 +37,6 @@ std::string read_job_record(const std::string& path) {
       .text();
 }
 
-JobHistory job_on_flat_ground() {
-  GroundState ground;
-  ground.terrain = undisturbed(flat_ground({0.0, 0.0, 2.0, 1.5}, 0.25));
-  JobDesign design;
-  design.start = BasePose{};
-  return history_start(design, ground.terrain.bank, ground, 1.0);
-}
-
 /// By both ways to read it, which must agree.
 std::string read_job_log(const std::string& path) {
   static const JobHistory start = job_on_flat_ground();
@@ -92,6 +84,14 @@ std::string read_stated_dig(const std::string& path) {
 }
 
 }  // namespace
+
+JobHistory job_on_flat_ground() {
+  GroundState ground;
+  ground.terrain = undisturbed(flat_ground({0.0, 0.0, 2.0, 1.5}, 0.25));
+  JobDesign design;
+  design.start = BasePose{};
+  return history_start(design, ground.terrain.bank, ground, 1.0);
+}
 
 std::vector<FileReader> job_readers() {
   return {{"job_record", read_job_record, true},
