@@ -94,6 +94,20 @@ list(TRANSFORM checks REPLACE "^[0-9]+-" "")
 list(APPEND checks test)
 check_table(docs/generated/checks.md checks ${checks})
 
+# Fuzz targets and mutations are as many as docs/reliability.md says.
+file(GLOB targets ${ROOT}/tests/fuzz/corpus/*)
+file(READ ${ROOT}/tests/mutation/mutations.tsv text)
+string(REGEX MATCHALL "\n(src|include|tools)/" mutations "${text}")
+file(READ ${ROOT}/docs/reliability.md text)
+list(LENGTH targets count)
+if(NOT text MATCHES "`tests/fuzz` has ${count} targets ")
+  message(SEND_ERROR "docs/reliability.md: states another number of fuzz targets than ${count}")
+endif()
+list(LENGTH mutations count)
+if(NOT text MATCHES "`mutations`: ${count} small faults ")
+  message(SEND_ERROR "docs/reliability.md: states another number of mutations than ${count}")
+endif()
+
 # Every text file names its copyright and licence, or lies where one statement covers the folder.
 file(GLOB_RECURSE licensed RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/* ${ROOT}/tools/*
   ${ROOT}/tests/*.cpp ${ROOT}/tests/*.hpp ${ROOT}/tests/*.py ${ROOT}/tests/*.cmake ${ROOT}/cmake/*
