@@ -254,6 +254,12 @@ TEST(Dxf, ABlockInItselfIsRefused) {
   EXPECT_NE(error.find("in more than 16 levels of blocks"), string::npos) << error;
 }
 
+TEST(Obj, AFaceOfTwoCornersIsRefused) {
+  const DesignFile file("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
+  const string error = error_about([&] { read_design(file.path()); }, file.path());
+  EXPECT_NE(error.find("2 corners"), string::npos) << error;
+}
+
 TEST(DesignFile, TheUnitThatWasTakenIsTold) {
   const PlainMesh mesh = battered_trench({0, 0});
   const DesignFile ply("ply", ply_text(mesh));

@@ -111,6 +111,8 @@ TEST(JobEstimate, SpreadsAddInQuadratureAndComeFromWhatIsNotKnown) {
   const EstimateSpread& fuel = vague.fuel.spread;
   EXPECT_NEAR(fuel.total(), std::hypot(std::hypot(fuel.density, fuel.played), fuel.fuel), 1e-12);
   EXPECT_NEAR(std::log(vague.fuel.interval()[1] / vague.fuel.value), 1.96 * fuel.total(), 1e-12);
+  const double idle = basis().fuel.idle_flow * vague.time.value / 1000.0 / vague.fuel.value;
+  EXPECT_NEAR(fuel.fuel, std::hypot(0.25 * idle, 0.27 * (1.0 - idle)), 1e-12);
 
   JobOutline scanned = trench("15x1x0.5", {50.0, 5.0});
   scanned.shape.volume.sd = 0.75;

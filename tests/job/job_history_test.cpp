@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <regex>
 #include <sstream>
 
 #include "job/trench_job.hpp"
@@ -213,16 +214,22 @@ TEST(JobHistory, LinesHaveTheKeysOfALog) {
 TEST(JobHistory, ADamagedLineIsNamedAndAJobWithoutALogGoesOn) {
   const ShortTrench site;
   TrenchJob of{site};
+  Eigen::Index rows = 0;
   {
     SiteJob job = of.begin();
     for (int i = 0; i < 2; ++i) of.make_step(job);
+    rows = job.history().before.z.rows();
   }
   const std::string path = of.path() + "/job-log.jsonl";
-  std::string log = log_of(of);
-  log.replace(log.find("\"move\""), 6, "\"fly\"");
-  std::ofstream(path, std::ios::binary) << log;
-  EXPECT_NE(error_of([&] { of.resume(); }, ErrorKind::bad_file).find("line 2: type"),
-            std::string::npos);
+  const std::string log = log_of(of);
+  const auto error_with = [&](const char* part, const std::string& instead) {
+    std::ofstream(path, std::ios::binary) << std::regex_replace(log, std::regex(part), instead);
+    return error_of([&] { of.resume(); }, ErrorKind::bad_file);
+  };
+  EXPECT_NE(error_with(R"("move")", R"("fly")").find("line 2: type"), std::string::npos);
+  const std::string last_row = R"("ground":{"row":)" + std::to_string(rows - 1);
+  const std::string beyond = error_with(R"("ground":\{"row":\d+)", last_row);
+  EXPECT_NE(beyond.find("rows"), std::string::npos) << beyond;
   std::filesystem::remove(path);
   {
     SiteJob job = of.resume();

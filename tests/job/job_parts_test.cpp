@@ -191,6 +191,13 @@ TEST(JobStations, AWideDesignIsDugFartherAhead) {
   EXPECT_LT(wide, machine.boom_pin.x() + machine.full_length());
 }
 
+TEST(JobStations, AFaceAtTheFarEndOfAWideDesignIsDugFromFartherBack) {
+  const auto to_end = [](const HandMadeJob& job) {
+    return job.frame().far - stations_of(job.frame(), job.settings).front().along;
+  };
+  EXPECT_GT(to_end(pit(1.0)), to_end(HandMadeJob(10.0, 3.6)) + 0.3);
+}
+
 TEST(JobStations, AFanOfPlanesReachesLanesThatAreTooFarAside) {
   const HandMadeJob job(10.0, 3.6);
   const Machine& machine = job.settings.site.machine;
@@ -602,6 +609,22 @@ TEST(StepSearch, AnEndWallIsCutAsSteeplyAsSoilIsLifted) {
   ASSERT_TRUE(rest);
   EXPECT_GE(rest->path.parameters.penetration_angle, 1.1);
   EXPECT_GT(rest->dig.payload_mass, 120.0);
+}
+
+TEST(StepSearch, LittleIsSpilledBesideForMoreInTheBucket) {
+  HandMadeJob job;
+  DesignWords words;
+  words.length = 10.0;
+  words.floor_width = 1.0;
+  words.depth = 0.2;
+  job.settings.surface = design_of_words(words, job.ground.bank);
+  const JobMap map = job.map();
+  StepTask task{
+      job.settings, map, job.ground, {3.0, 0.0, 0.0, 0.0}, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  task.lines = {{0.0, 0.0, 2.95, 6.0}};
+  const auto dig = best_dig(task);
+  ASSERT_TRUE(dig);
+  EXPECT_LT(dig->change.spilled, 0.25 * dig->change.gained);
 }
 
 TEST(StepSearch, NoDragGoesDownAWall) {
@@ -1063,6 +1086,9 @@ TEST(DumpPlace, ATruckIsLoadedWhereverInItsBedTheFrontReaches) {
   EXPECT_LT(std::hypot(place->place.x() - 3.0, place->place.y()), 6.5);
   job.settings.design.truck->bed_height = 4.0;
   EXPECT_FALSE(dump_place(job.settings, job.map(), job.ground, {3.0, -2.2, 0.0, 0.0}));
+  // 4 m up at 6 m, to which the front reaches from the foot of its boom, not from the tracks
+  job.settings.design.truck = JobTruck{box(2.0, 5.4, 4.0, 7.0), 2.4, 9000.0};
+  EXPECT_TRUE(dump_place(job.settings, job.map(), job.ground, base));
 }
 
 TEST(DumpPlace, OfAnAreaThatIsTooSmallTheLeastRunsOut) {
@@ -1275,6 +1301,21 @@ TEST(LaneView, WhatIsPushedAsideIsNotOfThePassThatPushedIt) {
   EXPECT_NEAR(view.change(patch, {0.0, 0.03, 5.0}).at_end, 0.5 * change.gained, 0.01 * under);
 }
 
+TEST(JobLearning, ADigThatIsLittleOfItsCycleTellsNothingOfItsEnergy) {
+  PlannedDig dig;
+  dig.fill = 0.9;
+  dig.energy = 5e3;
+  dig.cycle_energy = 1e5;
+  StepReport report;
+  report.joint_work = 2e5;
+  JobLearning learning;
+  learning.learn(dig, {}, report);
+  EXPECT_EQ(learning.energy.mean, 0.0);
+  dig.energy = 4e4;
+  learning.learn(dig, {}, report);
+  EXPECT_GT(learning.energy.mean, 0.0);
+}
+
 TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   const TemporaryFolder folder;
   JobRecord record;
@@ -1325,6 +1366,27 @@ TEST(JobGround, WhatADigChangedIsNotSeenUntilAScanSeesIt) {
   job.look(of.truth.scan(), of.truth.time() + 1.0);
   EXPECT_GT(job.progress().seen, dug);
   EXPECT_LE(job.progress().seen, of.truth.seen_share(footprint_of(of.hidden)) + 0.03);
+}
+
+TEST(JobGround, WhereScansAreNoisyACutThatNoneShowsIsKnownToACentimetre) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  of.settings.design.sensor = SensorErrors{0.001, 0.02, 0.0};
+  const TemporaryFolder folder;
+  JobGround ground(folder.file("job"), of.settings);
+  SiteEvent first;
+  first.scan = of.first;
+  first.time = trial_begin;
+  ground.take_in(first);
+  const Cell cut = *cell_at(ground.expected().bank, 5.5, 0.0);
+  EXPECT_EQ(ground.sd_at(cut), 0.0);
+  JobStep dig;
+  dig.what = JobAction::dig;
+  dig.path = std::get<DigPath>(
+      make_dig_path(of.settings.site.machine, {0.7, 0.3, 1.2}, 6.2, [](double) { return 0.0; }));
+  dig.dump = {5.0, 4.0, 2.4};
+  ground.expect(dig, 0.0);
+  EXPECT_NEAR(ground.sd_at(cut), 0.01, 0.005);
 }
 
 TEST(JobGround, ADigThatDidNotStallIsExpectedToItsEnd) {

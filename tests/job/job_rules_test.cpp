@@ -84,6 +84,13 @@ class PitJob {
   }
 
   JobStep next() { return job_.next(); }
+  /// Of the present step.
+  void done(double payload_mass) {
+    StepReport report;
+    report.payload_mass = payload_mass;
+    report.time = trial_begin + 120.0;
+    job_.done(job_.next().id, report);
+  }
   JobRecord record() const { return load_record(of_.path()); }
   JobProgress progress() const { return job_.progress(); }
 
@@ -218,6 +225,67 @@ TEST(JobRules, AWidePitIsDugFromBeyondUnlessItIsSurelyInShape) {
   EXPECT_GT(step.base.x, 7.0);
   EXPECT_EQ(after_last_place(wide, 0.88).what, JobAction::stop);
   EXPECT_EQ(after_last_place(narrow, 0.93).what, JobAction::stop);
+}
+
+TEST(JobRules, ADigThatLiftsLessThanAThirdOfWhatWasForetoldIsFruitless) {
+  PitJob trench(narrow);
+  for (const double share : {0.5, 0.2}) {
+    trench.stand_at(0);
+    const JobStep dig = trench.next();
+    ASSERT_EQ(dig.what, JobAction::dig);
+    ASSERT_GT(dig.predicted.payload_mass, 100.0);
+    trench.done(share * dig.predicted.payload_mass);
+    EXPECT_EQ(trench.record().fruitless_digs, share < 0.3 ? 1 : 0) << share;
+  }
+}
+
+/// Whether a strip of the floor that is too high is shaped from the first place after so many
+/// stalls.
+bool is_shaped(double from, double to, int stalls) {
+  PitJob trench(narrow, 0.4, [](PlainSiteFolder& of) {
+    of.site["design"]["origin_m"] = {-1.0, 0.0};
+    of.site["start_pose"]["x"] = -3.2;
+  });
+  trench.see([&](double x, double y) {
+    if (x < -1.0 || x > 3.0 || std::abs(y) > 0.5 * narrow) return 0.0;
+    return x > from && x < to ? -0.34 : -0.4;
+  });
+  trench.stand_at(0, [&](JobRecord& record) {
+    record.fruitless_digs = no_more;
+    record.progress.stalls = stalls;
+  });
+  return trench.next().what == JobAction::finish;
+}
+
+TEST(JobRules, WhereADigStalledTheFarEndIsShapedFromBeyond) {
+  EXPECT_TRUE(is_shaped(2.3, 3.0, 0));
+  EXPECT_FALSE(is_shaped(2.3, 3.0, 1));
+  EXPECT_TRUE(is_shaped(0.5, 2.0, 1)) << "what is nearer is not the far end";
+}
+
+TEST(JobRules, APassKeepsItsLoadWhileTheBucketHasRoomForMore) {
+  for (const double held : {0.0, 0.39}) {
+    PitJob trench(narrow);
+    trench.dig([](double, double) { return -0.36; });
+    trench.stand_at(0, [&](JobRecord& record) {
+      record.fruitless_digs = no_more;
+      if (held > 0.0)
+        record.carried = CarriedLoad{held * heaped_capacity(zx120()), {-0.5, 1.8, -0.4, 0.0}};
+    });
+    const JobStep pass = trench.next();
+    ASSERT_EQ(pass.what, JobAction::finish) << held;
+    EXPECT_EQ(pass.keeps_load, held == 0.0) << held;
+  }
+}
+
+TEST(JobRules, AMachineWhoseSoilHasRoomGoesOnToItsNextPlace) {
+  PitJob pit(wide);
+  pit.stand_at(0, [](JobRecord& record) {
+    record.base.x -= 0.4;
+    record.fruitless_digs = no_more;
+  });
+  EXPECT_EQ(pit.next().what, JobAction::move);
+  EXPECT_GT(pit.record().station, 0U);
 }
 
 TEST(JobRules, AMachineLeavesWhereItsDigsBroughtTheEdgeNear) {

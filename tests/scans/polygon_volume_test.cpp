@@ -68,6 +68,17 @@ TEST(PolygonVolume, IsThatOfAConeWithinItsDeviation) {
   EXPECT_NEAR(volume_over(cone({}, 1), polygon).area, 2.8 * 2.8, 1e-12);
 }
 
+TEST(PolygonVolume, NoiseOfTheRimOfEvenGroundIsNoRelief) {
+  constexpr int surveys = 30;
+  double sd = 0.0, squares = 0.0;
+  for (std::uint64_t seed = 0; seed < surveys; ++seed) {
+    const PolygonVolume found = volume_over(cone({0.0}, seed, 0.03), polygon);
+    sd += found.above.sd / surveys;
+    squares += std::pow(found.above.value, 2) / surveys;
+  }
+  EXPECT_NEAR(sd / std::sqrt(squares), 1.0, 0.3);
+}
+
 TEST(PolygonVolume, TheRimOnUnevenGroundWidensTheDeviation) {
   const PolygonVolume even = volume_over(cone({}, 1), polygon);
   const PolygonVolume bent = volume_over(cone({height, 0.1, 0.15}, 1), polygon);

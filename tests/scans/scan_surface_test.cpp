@@ -553,6 +553,16 @@ TEST(ScanOutline, OfALargeScanComesFromAChoiceOfItsPoints) {
   EXPECT_NEAR(seen.density, 400000.0 / 6.0, 0.05 * 400000.0 / 6.0);
 }
 
+TEST(ScanOutline, PointsHalfAMetreBeforeADepthCameraAreAheadAlongZ) {
+  const Folder folder;
+  for (const double ahead : {0.5, -0.5}) {
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 400; ++i) points.emplace_back(0.01 * (i % 20), 0.01 * (i / 20), ahead);
+    const ScanOutline seen = outline(scan_of({folder.write("a.pcd", points)}));
+    EXPECT_EQ(seen.seen_along_z, ahead > 0.0 ? 1.0 : 0.0);
+  }
+}
+
 TEST(ScanOutline, OfNothingIsUnknown) {
   const Folder folder;
   const ScanOutline seen = outline(scan_of({folder.write("a.pcd", {{nan, nan, nan}})}));

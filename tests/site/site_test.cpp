@@ -140,8 +140,29 @@ TEST(Site, AStallTellsOfTheSoilThatHeld) {
   stalled.options.dug_path = {digs.settings().machine, SceneOptions().path, 6.0};
   site.update(stalled);
   EXPECT_EQ(site.digs(), 0) << "no survey told a density";
-  EXPECT_EQ(site.belief().digs().size(), 1U);
+  ASSERT_EQ(site.belief().digs().size(), 1U);
   EXPECT_GT(site.density_at({}, strip, 0.3).percent, before.percent + 5.0);
+  const DigParameters path = SceneOptions().path;
+  const double length =
+      path.penetration_length * std::cos(path.penetration_angle) + path.drag_length;
+  double along = 0.0, volume = 0.0;
+  for (const BankPart& part : site.belief().digs().front().bank) {
+    along += part.volume * part.place.x;
+    volume += part.volume;
+  }
+  EXPECT_NEAR(along / volume, 6.0 - 0.5 * length, 0.05) << "the middle of the path";
+}
+
+TEST(Site, TwiceTheWorkForetoldTellsOfStrongerSoil) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  site.update(digs.scan());
+  SiteEvent dug = digs.dig(6.0);
+  dug.foretold = ForetoldDig{50.0, 5e4};
+  dug.options.joint_work = Measured{1e5, 5e3};
+  site.update(dug);
+  EXPECT_GT(site.belief().common_states().log_strength.value, 0.3);
 }
 
 TEST(Site, AnUnmovedMachineSeesTheCellsAsTheyAre) {

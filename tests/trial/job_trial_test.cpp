@@ -151,6 +151,17 @@ TEST(JobReference, DenserGroundCostsMoreAndTheBoundIsBelow) {
   }
 }
 
+TEST(JobReference, TheBoundLiftsTheWeightOfTheSoil) {
+  HiddenSite site = PlainSiteFolder().read();
+  FullDigOptions options;
+  options.evaluations = 60;
+  const double light = job_reference(site, zx120(), options).bound;
+  site.soil.specific_gravity *= 1.5;
+  site.soil.water_content /= 1.5;  // in the same pores
+  const double heavy = job_reference(site, zx120(), options).bound;
+  EXPECT_GT(heavy - light, 4000.0) << "750 kg/m^3 more, over 0.7 m";
+}
+
 TEST(JobReference, ThreadsDoNotMatter) {
   const HiddenSite site = PlainSiteFolder().read();
   FullDigOptions one, three;

@@ -264,5 +264,33 @@ TEST(TrackedPath, AnErrorOfTheTipDoesNotPressTheHeel) {
   EXPECT_EQ(stalls, 0);
 }
 
+TEST(TrackedPath, ATipThatBeginsFlatBelowTheGroundComesFromAbove) {
+  DigPath path = dig_step().path;
+  path.poses[1].bucket.z = path.poses[0].bucket.z;
+  const double ground = path.poses[0].bucket.z + 0.1;
+  const std::vector<double> shift(path.poses.size(), 0.0);
+  const DigPath driven = tracked_path(zx120(), path, shift, [=](double) { return ground; });
+  EXPECT_GT(driven.poses.size(), path.poses.size());
+  EXPECT_NEAR(driven.poses.front().bucket.z, ground, 0.03);
+}
+
+TEST(TrackedPath, ABucketThatSinksIsTurnedAsItsTipGoes) {
+  const DigPath path = dig_step().path;
+  constexpr double slope = 0.15;
+  std::vector<double> shift;
+  for (const DigPose& pose : path.poses)
+    shift.push_back(slope * (pose.bucket.x - path.poses.front().bucket.x));
+  const DigPath driven = tracked_path(zx120(), path, shift, [](double) { return 0.0; });
+  const std::size_t before = driven.poses.size() - path.poses.size();
+  double most = 0.0;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const double turned =
+        driven.poses[before + i].bucket.floor_angle - path.poses[i].bucket.floor_angle;
+    most = std::max(most, turned);
+  }
+  EXPECT_GT(most, 0.3 * slope);
+  EXPECT_LT(most, slope);
+}
+
 }  // namespace
 }  // namespace excavplan::test
