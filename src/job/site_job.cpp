@@ -312,15 +312,16 @@ JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
 /// @param straight  the machine as it looks along the design
 StepTask SiteJob::State::task_of(Work work, const DumpPlace& dump, const BasePose& straight) const {
   const bool finishing = work != Work::volume;
-  const JobFrame line = frame_at(stations[record.station]);
+  const JobStation station = here();
+  const JobFrame line = frame_at(station);
   const Eigen::Vector2d at = line.of({straight.x, straight.y});
   StepTask task{settings, map, ground.expected(), straight, dump, record.barren};
-  task.lines = work_lines(line, here(), settings.site.machine, at, finishing);
+  task.lines = work_lines(line, station, settings.site.machine, at, finishing);
   task.may_risk = record.progress.stalls == 0;
-  const bool passes_follow = here().leaves_passes && !here().is_wide;
+  const bool passes_follow = station.leaves_passes && !station.is_wide;
   task.may_bite = !passes_follow && !is_dug_out(record.base);
   task.finishing = finishing;
-  task.has_others_beside = stations[record.station].has_others_beside;
+  task.has_others_beside = station.has_others_beside;
   task.has_faces = frame.is_battered;
   task.has_steps = has_steps();
   task.leaves_floor = work == Work::faces;
