@@ -45,18 +45,19 @@ constexpr double height_doubt = 0.01;  // of the edge over the ground, at which 
 constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
 constexpr double shortest_pass = 0.6;  // [m]
-constexpr double in_shape_over = 0.5;  // so far the ground is in shape after it [m]
-constexpr double cleared_worth = 0.5;  // of soil taken off the floor, over ground brought in shape
-constexpr double pushed_price = 0.5;   // of soil that a pass pushes beside it, likewise
-constexpr double same_lane = 0.05;     // of a dig that lifted little [m]
-constexpr double same_start = 0.25;    // likewise [m]
-constexpr double same_turn = 0.03;     // likewise [rad]
-constexpr double leaning = 0.1;        // of the design under a bucket that runs along a face [m]
-constexpr double same_floor = 0.02;    // of lanes of which none is above the other [m]
-constexpr double most_below = 2.0;     // of what a lane shapes, in tolerances below its floor
-constexpr double least_gain = 0.2;     // of a dig for volume, over the bucket's capacity
-constexpr double least_in_hard = 0.07;    // likewise in soil that lets no bucket fill
-constexpr double least_on_bench = 0.3;    // likewise where more is below that can come with it
+constexpr double above_ground = 0.015;  // where a pass begins: an edge in it would not move [m]
+constexpr double in_shape_over = 0.5;   // so far the ground is in shape after it [m]
+constexpr double cleared_worth = 0.5;   // of soil taken off the floor, over ground brought in shape
+constexpr double pushed_price = 0.5;    // of soil that a pass pushes beside it, likewise
+constexpr double same_lane = 0.05;      // of a dig that lifted little [m]
+constexpr double same_start = 0.25;     // likewise [m]
+constexpr double same_turn = 0.03;      // likewise [rad]
+constexpr double leaning = 0.1;         // of the design under a bucket that runs along a face [m]
+constexpr double same_floor = 0.02;     // of lanes of which none is above the other [m]
+constexpr double most_below = 2.0;      // of what a lane shapes, in tolerances below its floor
+constexpr double least_gain = 0.2;      // of a dig for volume, over the bucket's capacity
+constexpr double least_in_hard = 0.07;  // likewise in soil that lets no bucket fill
+constexpr double least_on_bench = 0.3;  // likewise where more is below that can come with it
 constexpr double most_from_beside = 1.5;  // of soil that a dig lifts, over what lies in its lane
 constexpr double least_at_wall = 0.06;    // likewise, counting what lies there twice
 constexpr double least_lifted = 0.012;    // by a finishing pass [m^3]
@@ -431,7 +432,7 @@ class StepSearch {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
       }
-      const double down = std::max(0.0, ground(start) - rules.floor(start));
+      const double down = down_to_pass(lanes_[lane], ground, start);
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
@@ -453,13 +454,19 @@ class StepSearch {
       if (!is_worth_a_dig(at, start)) continue;
       lay_out_face(lane, start);
       const std::size_t steep = candidates_.size();
-      const double down = std::max(0.0, at.ground(start) - rules.floor(start));
+      const double down = down_to_pass(at, at.ground, start);
       for (const double angle : face_angles) {
         const double drag = start - down / std::tan(angle) - nearest(at.line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
       }
       is_laid_out = candidates_.size() > steep;
     }
+  }
+
+  /// From where a dig begins to the floor below it.
+  double down_to_pass(const Lane& lane, const GroundProfile& ground, double start) const {
+    return std::max(0.0, ground(start) - lane.floor(start)) +
+           (task_.finishing ? above_ground : 0.0);
   }
 
   /// Where the ground before a start comes into shape for a while: to cut on would only roughen
@@ -480,7 +487,7 @@ class StepSearch {
     rules.drag_keeps_angle = true;
     const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
     if (!(face > steepest_floor)) return;
-    const double down = std::max(0.0, lanes_[lane].ground(start) - rules.floor(start));
+    const double down = down_to_pass(lanes_[lane], lanes_[lane].ground, start);
     for (const double more : steeper) {
       const double angle = face + more;
       rules.drag_grade = face + 0.5 * more;
@@ -614,7 +621,9 @@ class StepSearch {
     if (is_barren(at, start)) return;
     const bool is_even = task_.finishing && !at.leans && !at.has_bank_at(start);
     const GroundProfile& ground = is_even ? at.mean : at.ground;
-    auto path = make_dig_path(machine_, parameters, start, ground, rules);
+    const double above = task_.finishing ? above_ground : 0.0;
+    auto path = make_dig_path(
+        machine_, parameters, start, [&](double x) { return ground(x) + above; }, rules);
     auto* made = std::get_if<DigPath>(&path);
     if (made == nullptr || (task_.carried > 0.0 && !can_hold(*made))) return;
     const auto [nearest, farthest] = std::minmax_element(
