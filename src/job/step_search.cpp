@@ -409,7 +409,7 @@ class StepSearch {
       for (const double more : steeper_than_slope) {
         const double angle = grade + more;
         rules.drag_grade = grade + 0.5 * more;
-        const double down = at.ground(start) - at.mean(start) + cut;
+        const double down = at.ground(start) - at.mean(start) + cut + above_start();
         const double from = start - down / (std::tan(angle) - slope);
         add_drags(lane, {angle, 1.0, 0.0}, {start, from}, rules.floor, rules);
       }
@@ -428,6 +428,7 @@ class StepSearch {
     for (double start = line.far; start > last; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
       lay_out_face(lane, start);
+      if (task_.has_faces) lay_out_along_slope(lane, start);  // where all of a face would stall
       if (lanes_[lane].has_bank_at(start)) {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
@@ -465,9 +466,11 @@ class StepSearch {
 
   /// From where a dig begins to the floor below it.
   double down_to_pass(const Lane& lane, const GroundProfile& ground, double start) const {
-    return std::max(0.0, ground(start) - lane.floor(start)) +
-           (task_.finishing ? above_ground : 0.0);
+    return std::max(0.0, ground(start) - lane.floor(start)) + above_start();
   }
+
+  /// Of the ground where a dig begins.
+  double above_start() const { return task_.finishing ? above_ground : 0.0; }
 
   /// Where the ground before a start comes into shape for a while: to cut on would only roughen
   /// it.
@@ -621,9 +624,8 @@ class StepSearch {
     if (is_barren(at, start)) return;
     const bool is_even = task_.finishing && !at.leans && !at.has_bank_at(start);
     const GroundProfile& ground = is_even ? at.mean : at.ground;
-    const double above = task_.finishing ? above_ground : 0.0;
     auto path = make_dig_path(
-        machine_, parameters, start, [&](double x) { return ground(x) + above; }, rules);
+        machine_, parameters, start, [&](double x) { return ground(x) + above_start(); }, rules);
     auto* made = std::get_if<DigPath>(&path);
     if (made == nullptr || (task_.carried > 0.0 && !can_hold(*made))) return;
     const auto [nearest, farthest] = std::minmax_element(

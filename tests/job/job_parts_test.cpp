@@ -562,6 +562,29 @@ TEST(StepSearch, APassBringsAFaceAheadIntoShape) {
   EXPECT_LT(dig->change.too_deep, 0.005);
 }
 
+TEST(StepSearch, TheTopOfAFaceIsTakenInLayersAlongIt) {
+  SlopeJob job;
+  const JobMap map = job.map();
+  const JobFrame frame = work_frame(job.settings, map, job.ground);
+  const JobStation station = stations_of(frame, job.settings)[2];
+  job.ground = dug_to(map, std::move(job.ground), 0.0);
+  for_each_cell(map.target.z, [&](Cell at) {
+    const double target = map.target.z(at.row, at.col);
+    if (target > -0.25) job.ground.bank.z(at.row, at.col) = std::min(0.0, target + 0.2);
+  });
+  const BasePose base = base_at(frame, station, job.ground, job.settings.site.machine);
+  const WorkRange range = work_range(frame, job.settings.site.machine, station.along);
+  StepTask task{job.settings, map, job.ground, base, {{-2.0, -1.5, 2.4}, 1.0, 2.4, false}, {}};
+  task.lines = {{0.0, 0.0, range.near, range.far}};
+  task.finishing = true;
+  task.has_faces = task.has_others_beside = true;
+  const auto dig = best_dig(task);
+  ASSERT_TRUE(dig.has_value());
+  EXPECT_GT(dig->path.drag_grade, 0.3);
+  EXPECT_GT(dig->change.cleared, 0.02);
+  EXPECT_FALSE(dig->may_stall);
+}
+
 /// Of a floor in shape but for a place so long, 2 cm above what may stay [m].
 std::optional<StepDig> pass_over_bump(double length, bool has_many) {
   HandMadeJob job;
@@ -1031,6 +1054,26 @@ TEST(StepSearch, HardGroundThatFallsTowardsTheMachineIsDugAlongItsSlope) {
   EXPECT_GT(falling->path.drag_grade, 0.15);
   EXPECT_GT(falling->dig.payload_mass, 140.0);
   EXPECT_FALSE(falling->may_stall);
+}
+
+TEST(StepSearch, APassBeginsAboveTheGroundAndReachesTheNearEnd) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  constexpr double left = 0.06;  // over the floor [m]
+  job.ground = dug_to(map, std::move(job.ground), left);
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  StepTask task{job.settings, map, job.ground, base, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  constexpr double near = 3.6;  // farther than where the bucket would curl at the tracks [m]
+  task.lines = {{0.0, -0.11, near, 6.0}};
+  task.finishing = true;
+  const auto dig = best_dig(task);
+  ASSERT_TRUE(dig.has_value());
+  const auto& poses = dig->path.poses;
+  EXPECT_NEAR(poses.front().bucket.z, -0.5 + left + 0.015, 1e-6);
+  const auto last = std::find_if(poses.rbegin(), poses.rend(),
+                                 [](const DigPose& pose) { return pose.phase == DigPhase::drag; });
+  ASSERT_NE(last, poses.rend());
+  EXPECT_NEAR(last->bucket.x, near, 0.02);
 }
 
 TEST(StepSearch, APassThatIsCountedOnDoesNotStallInGroundThatIsHigher) {
