@@ -371,6 +371,21 @@ TEST(JobRules, WhatTwoRowsLeaveOfAFaceIsShapedOnceMoreAtTheEnd) {
   }
 }
 
+TEST(JobRules, NoPlaceOfAFaceIsGoneToAgainWhereItsGroundIsDug) {
+  constexpr std::size_t looks = 4, of_last_row = 5;  // before the places of the first one again
+  PitJob slope(narrow, 0.3, with_face_ahead);
+  slope.see([](double x, double y) {
+    if (x < -1.5 || x > 3.5 || y < 0.0) return 0.0;
+    const double design = std::min(-0.3 + std::max(0.0, y - 3.5) / 1.5, 0.0);
+    return y > 3.3 ? std::min(design + 0.2, 0.0) : design;
+  });
+  slope.stand_at(0, [&](JobRecord& record) {
+    record.station = slope.stations.size() + looks + of_last_row - 1;
+    record.fruitless_digs = record.fruitless = no_more;
+  });
+  EXPECT_EQ(slope.next().what, JobAction::stop);
+}
+
 /// The dig from where the front swings over ground beside the pit that no scan saw, from here on.
 struct BesideUnseen : PitJob {
   explicit BesideUnseen(double from)
