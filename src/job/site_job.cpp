@@ -684,13 +684,10 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
   const bool is_again = record.station > 0 && stations[record.station - 1].is_lookout();
   if ((is_again || station.is_again || station.is_beyond) && !wants_passes(base_of(station)))
     return std::nullopt;
-  if (!station.is_wide) {
-    const bool is_there =
-        !station.is_again ||
-        can_stand_now({settings, map, first, ground.expected()}, frame_at(station), station);
-    return is_there ? std::optional(station) : std::nullopt;
-  }
-  return nearest_place({settings, map, first, ground.expected()}, frame_at(station), station);
+  const Standing on = {settings, map, first, ground.expected()};
+  if (station.is_wide) return nearest_place(on, frame_at(station), station);
+  if (station.is_again && !can_stand_now(on, frame_at(station), station)) return std::nullopt;
+  return station;
 }
 
 /// Another place for the present station, if its soil has no place any more.
