@@ -433,7 +433,7 @@ class StepSearch {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
       }
-      const double down = down_to_pass(lanes_[lane], ground, start);
+      const double down = down_to_floor(lanes_[lane], ground, start);
       for (const double angle : finish_angles) {
         const double drag = start - down / std::tan(angle) - nearest(line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
@@ -455,7 +455,7 @@ class StepSearch {
       if (!is_worth_a_dig(at, start)) continue;
       lay_out_face(lane, start);
       const std::size_t steep = candidates_.size();
-      const double down = down_to_pass(at, at.ground, start);
+      const double down = down_to_floor(at, at.ground, start);
       for (const double angle : face_angles) {
         const double drag = start - down / std::tan(angle) - nearest(at.line, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
@@ -465,11 +465,11 @@ class StepSearch {
   }
 
   /// From where a dig begins to the floor below it.
-  double down_to_pass(const Lane& lane, const GroundProfile& ground, double start) const {
+  double down_to_floor(const Lane& lane, const GroundProfile& ground, double start) const {
     return std::max(0.0, ground(start) - lane.floor(start)) + above_start();
   }
 
-  /// Of the ground where a dig begins.
+  /// So far over the ground a dig begins.
   double above_start() const { return task_.finishing ? above_ground : 0.0; }
 
   /// Where the ground before a start comes into shape for a while: to cut on would only roughen
@@ -490,7 +490,7 @@ class StepSearch {
     rules.drag_keeps_angle = true;
     const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
     if (!(face > steepest_floor)) return;
-    const double down = down_to_pass(lanes_[lane], lanes_[lane].ground, start);
+    const double down = down_to_floor(lanes_[lane], lanes_[lane].ground, start);
     for (const double more : steeper) {
       const double angle = face + more;
       rules.drag_grade = face + 0.5 * more;
