@@ -379,6 +379,7 @@ TEST(JobRules, NoPlaceOfAFaceIsGoneToAgainWhereItsGroundIsDug) {
     const double design = std::min(-0.3 + std::max(0.0, y - 3.5) / 1.5, 0.0);
     return y > 3.3 ? std::min(design + 0.2, 0.0) : design;
   });
+  ASSERT_EQ(slope.stations.size(), 4 * of_last_row) << "two rows, each twice";
   slope.stand_at(0, [&](JobRecord& record) {
     record.station = slope.stations.size() + looks + of_last_row - 1;
     record.fruitless_digs = record.fruitless = no_more;
