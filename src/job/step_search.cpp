@@ -387,8 +387,7 @@ class StepSearch {
       }
       for (const Attitude& attitude : attitudes) {
         rules.drag_keeps_angle = attitude.is_kept;
-        lay_out_layer(lane, start, {attitude.angle, thinnest_layer, ground - thinnest_layer},
-                      rules);
+        lay_out_layer(lane, start, {attitude.angle, ground - thinnest_layer}, rules);
       }
       rules.drag_keeps_angle = false;
       lay_out_along_slope(lane, start);
@@ -409,7 +408,7 @@ class StepSearch {
       for (const double more : steeper_than_slope) {
         const double angle = grade + more;
         rules.drag_grade = grade + 0.5 * more;
-        const double down = at.ground(start) - at.mean(start) + cut + above_start();
+        const double down = drop_to(at, start, at.mean(start) - cut);
         const double from = start - down / (std::tan(angle) - slope);
         add_drags(lane, {angle, 1.0, 0.0}, {start, from}, rules.floor, rules);
       }
@@ -420,7 +419,6 @@ class StepSearch {
   /// cannot begin within it.
   void lay_out_passes(std::size_t lane) {
     if (lanes_[lane].leans) return lay_out_along_face(lane);
-    const GroundProfile& ground = lanes_[lane].mean;
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
     const WorkLine& line = lanes_[lane].line;
@@ -433,9 +431,8 @@ class StepSearch {
         lay_out_layers(lane, start, attitudes, rules_in(lane));
         continue;
       }
-      const double down = down_to_floor(lanes_[lane], ground, start);
       for (const double angle : finish_angles) {
-        const double drag = start - down / std::tan(angle) - nearest(line, angle);
+        const double drag = longest_drag(lanes_[lane], start, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
         const double shorter = drag - (in_shape_before(lanes_[lane], start) - line.near);
         if (shorter > shortest_drag && shorter < drag)
@@ -455,22 +452,33 @@ class StepSearch {
       if (!is_worth_a_dig(at, start)) continue;
       lay_out_face(lane, start);
       const std::size_t steep = candidates_.size();
-      const double down = down_to_floor(at, at.ground, start);
       for (const double angle : face_angles) {
-        const double drag = start - down / std::tan(angle) - nearest(at.line, angle);
+        const double drag = longest_drag(at, start, angle);
         if (drag > shortest_drag) add(lane, {angle, 1.0, drag}, start, rules);
       }
       is_laid_out = candidates_.size() > steep;
     }
   }
 
-  /// From where a dig begins to the floor below it.
-  double down_to_floor(const Lane& lane, const GroundProfile& ground, double start) const {
-    return std::max(0.0, ground(start) - lane.floor(start)) + above_start();
+  /// The ground on which a dig begins: a thin cut on the mean, else where the bucket meets it.
+  const GroundProfile& ground_of(const Lane& lane, double start) const {
+    const bool is_even = task_.finishing && !lane.leans && !lane.has_bank_at(start);
+    return is_even ? lane.mean : lane.ground;
   }
 
-  /// So far over the ground a dig begins.
+  /// So far over it a dig begins.
   double above_start() const { return task_.finishing ? above_ground : 0.0; }
+
+  /// From where a dig begins to a height below it.
+  double drop_to(const Lane& lane, double start, double height) const {
+    return std::max(0.0, ground_of(lane, start)(start) - height) + above_start();
+  }
+
+  /// Along the floor, from the end of a penetration at that angle to as near as the bucket comes.
+  double longest_drag(const Lane& lane, double start, double angle) const {
+    const double down = drop_to(lane, start, lane.floor(start));
+    return start - down / std::tan(angle) - nearest(lane.line, angle);
+  }
 
   /// Where the ground before a start comes into shape for a while: to cut on would only roughen
   /// it.
@@ -490,18 +498,18 @@ class StepSearch {
     rules.drag_keeps_angle = true;
     const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
     if (!(face > steepest_floor)) return;
-    const double down = down_to_floor(lanes_[lane], lanes_[lane].ground, start);
     for (const double more : steeper) {
       const double angle = face + more;
       rules.drag_grade = face + 0.5 * more;
       if (rules.drag_grade > steepest_drag) break;
-      const double from = start - down / std::tan(angle);
       if (!task_.finishing) {
+        const double down = drop_to(lanes_[lane], start, rules.floor(start));
+        const double from = start - down / std::tan(angle);
         add_drags(
             lane, {angle, 1.0, 0.0}, {start, from}, [](double) { return lowest; }, rules);
         continue;
       }
-      const double longest = from - nearest(lanes_[lane].line, angle);
+      const double longest = longest_drag(lanes_[lane], start, angle);
       if (longest > shortest_drag) add(lane, {angle, 1.0, longest}, start, rules);
     }
   }
@@ -509,17 +517,17 @@ class StepSearch {
   /// Layers of all depths from there.
   template <typename Attitudes>
   void lay_out_layers(std::size_t lane, double start, const Attitudes& with, DigPathOptions rules) {
-    const GroundProfile& ground = lanes_[lane].ground;
+    const double ground = ground_of(lanes_[lane], start)(start);
     const LaneView& view = lanes_[lane].view;
     const double level = lanes_[lane].mean_over(start - level_to, start - level_from,
                                                 [&](Index col) { return view.ground_at(col); });
     if (std::isnan(level)) return;
     for (const double cut : cut_depths) {
       if (cut > task_.deepest_cut) break;
-      const double depth = std::max(ground(start) - level, 0.0) + cut;
+      const double height = std::min(ground, level) - cut;
       for (const Attitude& attitude : with) {
         rules.drag_keeps_angle = attitude.is_kept;
-        lay_out_layer(lane, start, {attitude.angle, depth, ground(start) - depth}, rules);
+        lay_out_layer(lane, start, {attitude.angle, height}, rules);
       }
       if (level - cut < rules.floor(start - level_to)) break;  // the next would be the same
     }
@@ -538,25 +546,25 @@ class StepSearch {
     const double far = lanes_[lane].line.far;
     lay_out_layers(lane, far, std::array{attitude}, rules);
     // From its top, where what lies before it is deeper already.
-    const double top = lanes_[lane].ground(far);
+    const double top = ground_of(lanes_[lane], far)(far);
     for (const double cut : cut_depths) {
       if (cut > task_.deepest_cut) break;
-      lay_out_layer(lane, far, {attitude.angle, cut, top - cut}, rules);
+      lay_out_layer(lane, far, {attitude.angle, top - cut}, rules);
     }
   }
 
   /// A penetration and the height of the drag after it.
   struct Layer {
     double angle;
-    double depth;   ///< [m]
     double height;  ///< of the drag [m]
   };
 
   void lay_out_layer(std::size_t lane, double start, const Layer& layer,
                      const DigPathOptions& rules) {
-    const double from = start - layer.depth / std::tan(layer.angle);
+    const double down = drop_to(lanes_[lane], start, layer.height);
+    const double from = start - down / std::tan(layer.angle);
     add_drags(
-        lane, {layer.angle, layer.depth / std::sin(layer.angle), 0.0}, {start, from},
+        lane, {layer.angle, down / std::sin(layer.angle), 0.0}, {start, from},
         [&](double) { return layer.height; }, rules);
   }
 
@@ -622,8 +630,7 @@ class StepSearch {
            const DigPathOptions& rules) {
     const Lane& at = lanes_[lane];
     if (is_barren(at, start)) return;
-    const bool is_even = task_.finishing && !at.leans && !at.has_bank_at(start);
-    const GroundProfile& ground = is_even ? at.mean : at.ground;
+    const GroundProfile& ground = ground_of(at, start);
     auto path = make_dig_path(
         machine_, parameters, start, [&](double x) { return ground(x) + above_start(); }, rules);
     auto* made = std::get_if<DigPath>(&path);

@@ -1076,6 +1076,40 @@ TEST(StepSearch, APassBeginsAboveTheGroundAndReachesTheNearEnd) {
   EXPECT_NEAR(last->bucket.x, near, 0.02);
 }
 
+/// The height at which a bank of 0.4 m, left at the end of a trench, is cut first.
+std::optional<double> first_cut_at_end(double strength, bool finishing) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  job.ground = dug_to(map, std::move(job.ground), 0.0);
+  for_each_cell(job.ground.bank.z, [&](Cell at) {
+    if (job.ground.bank.x(at.col) > 5.3 && !std::isnan(map.target.z(at.row, at.col)))
+      job.ground.bank.z(at.row, at.col) = -0.1;
+  });
+  const BasePose base = {3.0, 0.0, 0.0, 0.0};
+  StepTask task{job.settings, map, job.ground, base, {{3.0, 3.5, 3.0}, 1.57, 2.0, false}, {}};
+  task.lines = {{0.0, 0.0, 2.95, 6.0, true}};
+  task.strength_factor = strength;
+  task.hard_factor = 1.05 * strength;
+  task.finishing = finishing;
+  const auto dig = best_dig(task);
+  if (!dig) return std::nullopt;
+  const auto& poses = dig->path.poses;
+  EXPECT_NEAR(poses.front().bucket.z, finishing ? -0.085 : -0.1, 1e-6);
+  const auto drag = std::find_if(poses.begin(), poses.end(),
+                                 [](const DigPose& pose) { return pose.phase == DigPhase::drag; });
+  EXPECT_NE(drag, poses.end());
+  return drag->bucket.z;
+}
+
+TEST(StepSearch, ALayerThatBeginsAboveTheGroundIsCutAsDeepAsOneOnIt) {
+  for (const double strength : {1.0, 1.25, 2.0}) {
+    const auto for_volume = first_cut_at_end(strength, false);
+    const auto for_shape = first_cut_at_end(strength, true);
+    ASSERT_TRUE(for_volume && for_shape) << strength;
+    EXPECT_NEAR(*for_shape, *for_volume, 1e-3) << strength;
+  }
+}
+
 TEST(StepSearch, APassThatIsCountedOnDoesNotStallInGroundThatIsHigher) {
   HandMadeJob job;
   const JobMap map = job.map();
