@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.24)
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
 set(rooms base optimisation ground change soil belief machine earth simulation sensing calibration planning
-  kit clouds design scans logs efficiency images recording density site job watch trial paper experiments results maps drawing
+  kit clouds design scans logs efficiency images recording density estimating site job watch trial paper experiments results maps drawing
   figures report robot)
 set(base_may_use "")
 set(optimisation_may_use "")
@@ -30,9 +30,9 @@ set(efficiency_may_use ground change clouds scans logs)
 set(images_may_use clouds scans)
 set(recording_may_use clouds scans images)
 set(density_may_use ground change soil machine simulation calibration scans logs)
+set(estimating_may_use ground soil machine planning design efficiency)
 set(site_may_use ground change soil belief machine simulation planning scans density)
-set(job_may_use
-  ground soil belief machine simulation planning scans design efficiency density site)
+set(job_may_use ground soil belief machine simulation planning scans design density site)
 set(watch_may_use ground job)
 set(trial_may_use
   ground change soil belief machine earth simulation sensing planning clouds scans design density site job)
@@ -40,13 +40,13 @@ set(paper_may_use change clouds scans density)
 set(experiments_may_use
   ground change soil machine simulation sensing calibration planning scans density)
 set(results_may_use ground change soil machine simulation sensing calibration planning kit clouds scans
-  efficiency recording density experiments job trial)
+  efficiency recording density estimating experiments job trial)
 set(maps_may_use ground change simulation sensing planning)
 set(drawing_may_use ground machine)
 set(figures_may_use
-  ground change soil machine simulation sensing planning kit density job efficiency experiments results drawing)
+  ground change soil machine simulation sensing planning kit density estimating job efficiency experiments results drawing)
 set(report_may_use
-  ground change machine simulation sensing planning density site job trial results drawing figures)
+  ground change machine simulation sensing planning density estimating site job trial results drawing figures)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density site
   job results)
 

@@ -4,7 +4,7 @@
 
 #include <excavplan/design/cut_and_fill.hpp>
 #include <excavplan/design/design_words.hpp>
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 #include <excavplan/report/report_pages.hpp>
 #include <excavplan/results/result_json.hpp>
 

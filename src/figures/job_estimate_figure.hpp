@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 
 #include "drawing/plot.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 

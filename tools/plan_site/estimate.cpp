@@ -6,7 +6,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/design/cut_and_fill.hpp>
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/estimating/job_estimate.hpp>
 #include <excavplan/job/job_order.hpp>
 #include <excavplan/watch/job_view.hpp>
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 
 #include "frame/arguments.hpp"
 #include "plan_site/order_inputs.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 #include <excavplan/job/site_job.hpp>
 
 /// @file

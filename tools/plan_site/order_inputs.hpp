@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/estimating/job_estimate.hpp>
 #include <excavplan/job/job_order.hpp>
 
 #include "frame/arguments.hpp"

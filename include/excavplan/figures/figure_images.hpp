@@ -7,9 +7,9 @@
 
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/efficiency/efficiency.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 #include <excavplan/experiments/study.hpp>
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/job/job_cost.hpp>
 #include <excavplan/planning/rehearsal.hpp>
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/soil/density_fit.hpp>

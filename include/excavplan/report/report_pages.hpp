@@ -5,7 +5,7 @@
 #include <string>
 
 #include <excavplan/density/density_estimate.hpp>
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 #include <excavplan/job/job_history.hpp>
 #include <excavplan/job/job_progress.hpp>
 #include <excavplan/planning/rehearsal.hpp>

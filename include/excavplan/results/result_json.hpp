@@ -8,7 +8,7 @@
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/efficiency/run_comparison.hpp>
-#include <excavplan/job/job_cost.hpp>
+#include <excavplan/estimating/job_cost.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/recording/recording.hpp>

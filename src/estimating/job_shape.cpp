@@ -5,7 +5,7 @@
 #include <variant>
 
 #include <excavplan/design/design_words.hpp>
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/estimating/job_estimate.hpp>
 
 #include "base/check.hpp"
 #include "ground/grid_cells.hpp"

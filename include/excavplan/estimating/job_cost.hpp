@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/estimating/job_estimate.hpp>
 
 /// @file
 /// What an estimated job costs. Prices and costs are in one currency, which nobody asks for.

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/estimating/job_estimate.hpp>
 
 #include "support/errors.hpp"
 #include "support/plain_site_folder.hpp"

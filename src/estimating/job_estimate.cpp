@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/job/job_estimate.hpp>
+#include <excavplan/estimating/job_estimate.hpp>
 
 #include <algorithm>
 #include <cmath>

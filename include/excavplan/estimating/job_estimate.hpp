@@ -9,7 +9,7 @@
 #include <excavplan/base/measured.hpp>
 #include <excavplan/design/cut_and_fill.hpp>
 #include <excavplan/design/design_words.hpp>
-#include <excavplan/job/played_jobs.hpp>
+#include <excavplan/estimating/played_jobs.hpp>
 #include <excavplan/machine/fuel_model.hpp>
 #include <excavplan/planning/full_dig.hpp>
 #include <excavplan/soil/density_law.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/job/played_jobs.hpp>
+#include <excavplan/estimating/played_jobs.hpp>
 
 #include "base/json.hpp"
 
