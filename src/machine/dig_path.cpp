@@ -27,6 +27,7 @@ constexpr int scan_poses = 12;         // a phase, while start points are compar
 constexpr double scan_lift = 0.1;      // tip travel between poses of a lift, likewise [m]
 constexpr int scan_per_metre = 20;     // start points
 constexpr double scan_tie = 1e-9;      // margins closer than this count as equal [rad]
+constexpr double fall_over = 0.25;     // to both sides, where the fall of a floor is told; ours [m]
 constexpr int bisections = 40;         // of a step of the penetration, to the floor
 constexpr double same_posture = 1e-6;  // joints closer than this [rad]
 constexpr int ground_intervals = 16;   // where the ground is looked up under the bucket
@@ -90,6 +91,8 @@ void check(const DigPathOptions& options) {
           "finite");
   require(std::abs(options.drag_grade) <= 1.0, "DigPathOptions::drag_grade", options.drag_grade,
           "in -1 .. 1 rad");
+  require(!options.drag_follows_floor || options.floor,
+          "DigPathOptions::drag_follows_floor needs DigPathOptions::floor");
   require(options.penetration_clearance >= 0.0 && options.penetration_clearance <= 1.0,
           "DigPathOptions::penetration_clearance", options.penetration_clearance, "in 0 .. 1 rad");
   require(options.lift_clearance >= 0.0 && std::isfinite(options.lift_clearance),
@@ -233,6 +236,7 @@ class Layout {
   double tip_above_floor(double s) const;
   double length_to_floor(double length) const;
   double missing_height(const LinkPositions& at) const;
+  double fall_of_floor(double x) const;
   std::optional<Infeasible> solve_drag(DigPose& pose, const DigPose& start, double s) const;
   std::optional<Infeasible> keep_above_floor(DigPose& pose, const DigPose& start, double s);
   int steps(double tip_travel) const;
@@ -384,22 +388,32 @@ bool Layout::misses_an_end(double start_x) {
 /// Joints and floor angle of a pose of the drag whose tip is given.
 std::optional<Infeasible> Layout::solve_drag(DigPose& pose, const DigPose& start, double s) const {
   pose.bucket.floor_angle = start.bucket.floor_angle;
-  const auto joints = options_.drag_keeps_angle
+  if (options_.drag_follows_floor)
+    pose.bucket.floor_angle += fall_of_floor(pose.bucket.x) - fall_of_floor(start.bucket.x);
+  const auto joints = options_.drag_keeps_angle || options_.drag_follows_floor
                           ? inverse_kinematics(machine_, pose.bucket)
                           : inverse_kinematics_fixed_bucket(machine_, pose.bucket.x, pose.bucket.z,
                                                             start.joints[2]);
   if (const auto* failed = std::get_if<Unreachable>(&joints)) return stop(pose.phase, s, *failed);
   pose.joints = std::get<JointAngles>(joints);
-  if (!options_.drag_keeps_angle) {
+  if (!options_.drag_keeps_angle && !options_.drag_follows_floor) {
     pose.bucket.floor_angle += start.joints.sum() - pose.joints.sum();
   }
   return std::nullopt;
 }
 
-/// Raises a pose of the drag as far as the floor asks for.
+/// Of the floor around a place of the drag, away from the machine [rad]; 0 where it is not known.
+double Layout::fall_of_floor(double x) const {
+  const double rise = options_.floor(x + fall_over) - options_.floor(x - fall_over);
+  return std::isnan(rise) ? 0.0 : std::atan2(rise, 2.0 * fall_over);
+}
+
+/// Brings a pose of the drag onto the floor, or as far over it as the bucket asks for.
 std::optional<Infeasible> Layout::keep_above_floor(DigPose& pose, const DigPose& start, double s) {
   const double line = pose.bucket.z;
-  pose.bucket.z = std::max(line, floor_at(pose.bucket.x));
+  const double floor = floor_at(pose.bucket.x);
+  const bool follows = options_.drag_follows_floor && std::isfinite(floor);
+  pose.bucket.z = follows ? floor : std::max(line, floor);
   if (auto stopped = solve_drag(pose, start, s)) return stopped;
   if (!options_.floor) return std::nullopt;
   const double missing = missing_height(link_positions(machine_, pose.joints));

@@ -763,6 +763,7 @@ TEST(DigTrials, LayOutWhatMakeDigPathDoesFromEveryStart) {
     options.drag_grade = random.uniform(-0.3, 0.3);
     options.drag_keeps_angle = random.uniform() < 0.3;
     if (random.uniform() < 0.3) options.floor = [](double) { return -0.4; };
+    options.drag_follows_floor = options.floor && random.uniform() < 0.3;
     const GroundProfile ground = bent;
     const DigTrials trials(zx120(), dig, ground, options);
     for (double x = 2.0; x < 9.5; x += 0.25) {

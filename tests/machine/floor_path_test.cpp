@@ -113,6 +113,56 @@ TEST(FloorPath, FinishingPassKeepsEdgeOnTheFloorAndItsAngle) {
   EXPECT_GE(on_floor, 70);
 }
 
+/// A trench across the dig, 0.5 m deep and 1 m wide at its foot, its faces 1.73:1.
+double battered(double x) {
+  const double from_middle = std::abs(x - 5.0);
+  return std::min(0.0, -0.5 + std::max(0.0, from_middle - 0.5) / 1.73);
+}
+
+TEST(FloorPath, SweepsDownOneFaceAndUpTheOther) {
+  DigPathOptions options = over(battered);
+  options.drag_follows_floor = true;
+  const auto outcome = make_dig_path(zx120(), {0.75, 1.0, 2.6}, 6.35, battered, options);
+  if (const auto* stop = std::get_if<Infeasible>(&outcome)) FAIL() << stop->message;
+  const auto& path = std::get<DigPath>(outcome);
+  EXPECT_LT(deepest_below(path, battered), 1e-9);
+  int on_floor = 0, on_near_face = 0;
+  for (const DigPose& pose : path.poses) {
+    if (pose.phase != DigPhase::drag) continue;
+    EXPECT_NEAR(pose.bucket.z, battered(pose.bucket.x), 0.005);
+    if (std::abs(pose.bucket.x - 5.0) < 0.2) {
+      EXPECT_NEAR(pose.bucket.floor_angle, 0.45, 0.12);
+      ++on_floor;
+    }
+    if (pose.bucket.x > 3.95 && pose.bucket.x < 4.2) {
+      EXPECT_NEAR(pose.bucket.floor_angle, 0.45 - std::atan(1.0 / 1.73), 0.12);
+      ++on_near_face;
+    }
+  }
+  EXPECT_GE(on_floor, 10);
+  EXPECT_GE(on_near_face, 5);
+}
+
+TEST(FloorPath, SweepsNothingWithoutAFloor) {
+  DigPathOptions options;
+  options.drag_follows_floor = true;
+  const auto error = error_of([&] {
+    return make_dig_path(zx120(), {0.75, 0.3, 1.0}, 6.0, level, options);
+  });
+  EXPECT_NE(error.find("drag_follows_floor needs"), std::string::npos) << error;
+}
+
+TEST(FloorPath, SweepsOnLevelWhereTheFloorIsNotKnown) {
+  const GroundProfile ends = [](double x) { return x < 5.0 ? std::nan("") : -0.3; };
+  DigPathOptions options = over(ends);
+  options.drag_follows_floor = true;
+  const auto path = std::get<DigPath>(make_dig_path(zx120(), {0.6, 1.0, 1.2}, 6.0, level, options));
+  for (const DigPose& pose : path.poses) {
+    if (pose.phase != DigPhase::drag) continue;
+    EXPECT_NEAR(pose.bucket.z, -0.3, 1e-6);
+  }
+}
+
 TEST(FloorPath, DragFollowsItsGrade) {
   DigPathOptions options;
   options.drag_grade = 0.2;

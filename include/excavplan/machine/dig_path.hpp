@@ -96,6 +96,9 @@ struct DigPathOptions {
   /// The bucket keeps its attitude in the drag, for a finishing pass; in the paper it keeps its
   /// angle to the arm.
   bool drag_keeps_angle = false;
+  /// In the drag the tip follows the floor, and the bucket keeps its angle to it as it falls or
+  /// rises over 0.5 m (ours): down a slope, along its foot, and curled up another one.
+  bool drag_follows_floor = false;
   /// Of the bucket's floor over the line of penetration, so that a machine that does not track
   /// exactly does not press its heel into the ground, in 0 .. 1 rad [rad]; 0 in the paper.
   double penetration_clearance = 0.0;
