@@ -51,6 +51,7 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
     : ground_(ground, line, extent, ground.bank.cell_size),
       surface_(ground_.terrain().surface()),
       target_(Eigen::ArrayXXd::Constant(surface_.z.rows(), surface_.z.cols(), nan)),
+      exact_(target_),
       dump_(Mask::Constant(surface_.z.rows(), surface_.z.cols(), false)),
       counts_(dump_),
       untouched_(dump_),
@@ -61,6 +62,8 @@ LaneView::LaneView(const Terrain& ground, const JobMap& job, const DigLine& line
     const auto cell = cell_at(job.target, place.x(), place.y());
     if (!cell) return;
     target_(at.row, at.col) = job.target.z(cell->row, cell->col) - line.z;
+    const double between = height_at(job.target, place.x(), place.y()) - line.z;
+    exact_(at.row, at.col) = std::isnan(between) ? target_(at.row, at.col) : between;
     dump_(at.row, at.col) = job.dump(cell->row, cell->col);
     counts_(at.row, at.col) = job.counts(cell->row, cell->col);
     untouched_(at.row, at.col) = job.untouched(cell->row, cell->col);
@@ -74,42 +77,53 @@ void LaneView::look_under_bucket(double bucket_width) {
   const auto row_of = [&](double y) { return (y - surface_.origin.y()) / cell; };
   first_row_ = static_cast<Index>(std::round(row_of(-0.5 * bucket_width)));
   end_row_ = static_cast<Index>(std::round(row_of(0.5 * bucket_width)));
-  const auto inner = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
-  floor_ = ground_at_ = top_ = ArrayXd::Zero(columns());
+  inner_ = static_cast<Index>(std::ceil(edge_slack / cell - 1e-9));
+  floor_ = exact_floor_ = ground_at_ = top_ = ArrayXd::Zero(columns());
   std::vector<double> heights;
   fall_ = ArrayXd::Constant(columns(), nan);
   for (Index col = 0; col < columns(); ++col) {
-    double floor = -infinity, edge = -infinity;
     heights.clear();
     const auto under = target_.col(col).segment(first_row_, end_row_ - first_row_);
     if (under.size() > 0 && !under.isNaN().any()) fall_(col) = under.maxCoeff() - under.minCoeff();
     for (Index row = first_row_; row < end_row_; ++row) {
       const double z = surface_.z(row, col);
-      const bool is_edge = row < first_row_ + inner || row >= end_row_ - inner;
-      const double target = target_(row, col);
-      if (!is_edge) floor = std::max(floor, std::isnan(target) ? z : target);
-      if (is_edge && !std::isnan(target)) edge = std::max(edge, target);
-      if (forbidden_(row, col) > floor)
-        floor = std::isinf(forbidden_(row, col)) ? nan : forbidden_(row, col);
-      if (!is_edge && !std::isnan(z)) heights.push_back(z);
+      if (!is_edge(row) && !std::isnan(z)) heights.push_back(z);
     }
-    if (edge < floor + face_rise) floor = std::max(floor, edge);
     std::sort(heights.begin(), heights.end(), std::greater<>());
     const auto known = static_cast<Index>(heights.size());
-    const bool is_known = 2 * known > end_row_ - first_row_ - 2 * inner;
+    const bool is_known = 2 * known > end_row_ - first_row_ - 2 * inner_;
     ground_at_(col) = is_known ? mean_of(heights, known) : nan;
     top_(col) = is_known ? mean_of(heights, std::max<Index>(1, known / top_part)) : nan;
-    floor_(col) = std::isnan(ground_at_(col)) ? nan : floor;
+    floor_(col) = is_known ? floor_of(target_, col) : nan;
+    exact_floor_(col) = is_known ? floor_of(exact_, col) : nan;
   }
 }
 
+bool LaneView::is_edge(Index row) const {
+  return row < first_row_ + inner_ || row >= end_row_ - inner_;
+}
+
+double LaneView::floor_of(const Eigen::ArrayXXd& target, Index col) const {
+  double floor = -infinity, edge = -infinity;
+  for (Index row = first_row_; row < end_row_; ++row) {
+    const double here = target(row, col);
+    if (!is_edge(row)) floor = std::max(floor, std::isnan(here) ? surface_.z(row, col) : here);
+    if (is_edge(row) && !std::isnan(here)) edge = std::max(edge, here);
+    if (forbidden_(row, col) > floor)
+      floor = std::isinf(forbidden_(row, col)) ? nan : forbidden_(row, col);
+  }
+  return edge < floor + face_rise ? std::max(floor, edge) : floor;
+}
+
 void LaneView::keep_above(double level) {
-  floor_ = floor_.isNaN().select(floor_, floor_.max(level));
+  for (ArrayXd* floor : {&floor_, &exact_floor_})
+    *floor = floor->isNaN().select(*floor, floor->max(level));
 }
 
 GroundProfile LaneView::floor(double allowance) const {
   // Nothing is dug where the floor is not known.
-  return between_columns(surface_, floor_.isNaN().select(ground_at_, floor_ + allowance));
+  return between_columns(surface_,
+                         exact_floor_.isNaN().select(ground_at_, exact_floor_ + allowance));
 }
 
 GroundProfile LaneView::top() const { return between_columns(surface_, top_); }

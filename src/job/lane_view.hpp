@@ -78,16 +78,21 @@ class LaneView {
 
  private:
   void look_under_bucket(double bucket_width);
+  bool is_edge(Eigen::Index row) const;
+  /// Under a column of the bucket, of such targets [m].
+  double floor_of(const Eigen::ArrayXXd& target, Eigen::Index col) const;
 
   GroundAlong ground_;
   HeightMap surface_;
-  Eigen::ArrayXXd target_;  ///< in the view, NaN beside the design
+  Eigen::ArrayXXd target_;  ///< of the cells that are seen, NaN beside the design
+  Eigen::ArrayXXd exact_;   ///< between them, where a path along it goes
   Mask dump_;
   Mask counts_;
   Mask untouched_;
   Eigen::ArrayXXd forbidden_;
   Eigen::Index first_row_ = 0, end_row_ = 0;  ///< under the bucket
-  Eigen::ArrayXd floor_, ground_at_, top_, fall_;
+  Eigen::Index inner_ = 0;                    ///< rows of its edges, which may be beside the design
+  Eigen::ArrayXd floor_, exact_floor_, ground_at_, top_, fall_;
 };
 
 }  // namespace excavplan
