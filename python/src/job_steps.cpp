@@ -67,8 +67,9 @@ void bind_step(py::module_& module) {
           "what", [](const JobStep& step) { return name(step.what); },
           "'dig', 'finish', 'move', 'scan', 'wait' or 'stop'.")
       .def_readonly("base", &JobStep::base, "Where the machine stands; of a move: where it goes.")
-      .def_readonly("swung", &JobStep::swung,
-                    "Of the line of the dig, to the left of the base [rad].")
+      .def_readonly(
+          "swung", &JobStep::swung,
+          "Of the line of the dig or the middle of a scan, to the left of the base [rad].")
       .def_readonly("lane", &JobStep::lane,
                     "Of that line, so far to the left of the swing axis [m].")
       .def_property_readonly(

@@ -10,6 +10,7 @@
 #include "base/angles.hpp"
 #include "base/plan_geometry.hpp"
 #include "base/text.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -17,15 +18,18 @@ namespace {
 using Eigen::Vector2d;
 
 // Numbers of our own choice.
-constexpr double nearest = 0.5;        // of the pin, share of boom and arm
-constexpr double farthest = 0.9;       // likewise
-constexpr double radius_step = 0.4;    // [m]
-constexpr double turn_step = 0.05;     // [rad]
-constexpr double most_turn = 2.6;      // [rad]
-constexpr double drop = 0.3;           // from the open bucket to the heap [m]
-constexpr double height_price = 0.15;  // of a metre, as a swing [rad/m]
-constexpr double edge_of_cut = 0.6;    // soil keeps so far from the design [m]
-constexpr double off_keep_out = 0.3;   // likewise from keep-outs, as heaps run and no dump is exact
+constexpr double nearest = 0.5;           // of the pin, share of boom and arm
+constexpr double farthest = 0.9;          // likewise
+constexpr double farthest_across = 0.99;  // likewise over a design that the machine stands beside
+constexpr double room_price = 0.6;        // of a metre nearer than is wanted, as a swing [rad/m]
+constexpr double later_soil = 1.6;        // half of the width of what is laid then [m]
+constexpr double radius_step = 0.4;       // [m]
+constexpr double turn_step = 0.05;        // [rad]
+constexpr double most_turn = 2.6;         // [rad]
+constexpr double drop = 0.3;              // from the open bucket to the heap [m]
+constexpr double height_price = 0.15;     // of a metre, as a swing [rad/m]
+constexpr double edge_of_cut = 0.6;       // soil keeps so far from the design [m]
+constexpr double off_keep_out = 0.3;  // likewise from keep-outs, as heaps run and no dump is exact
 constexpr double outside_price = 10.0;  // of a bucket beside the dump areas, as a swing [rad]
 constexpr double inside_bed = 0.5;      // of a truck's border, so that the load falls in [m]
 constexpr double spare_reach = 0.1;     // of what the joints allow [m]
@@ -39,10 +43,14 @@ constexpr int halvings = 7;             // of the range in which the top of a he
 
 bool is_cut(const JobMap& map, Cell at) { return !std::isnan(map.target.z(at.row, at.col)); }
 
-/// Height of the cone of a bucket of soil.
-double heap_height(const JobSettings& settings) {
+double volume_of(const JobSettings& settings, const DumpRules& rules) {
+  return rules.load * heaped_capacity(settings.site.machine);
+}
+
+/// Height of the cone of a load of soil.
+double heap_height(const JobSettings& settings, const DumpRules& rules) {
   const double repose = std::tan(settings.site.soil.angle_of_repose);
-  const double volume = heaped_capacity(settings.site.machine);
+  const double volume = volume_of(settings, rules);
   return std::cbrt(3.0 * volume * repose * repose / pi);
 }
 
@@ -90,15 +98,22 @@ void for_each_on(const SitePolygon& polygon, const Vector2d& near, double reach,
 
 /// Visits the places within reach, with the way to the left that the machine swings to them [rad].
 template <typename Visit>
-void for_each_place(const JobSettings& settings, const BasePose& base, double spare, Visit visit) {
+void for_each_place(const JobSettings& settings, const BasePose& base, const DumpRules& rules,
+                    Visit visit) {
   const Machine& machine = settings.site.machine;
   const double reach = machine.boom_length + machine.arm_length;
   std::vector<double> turns;
   for (double turn = -most_turn; turn <= most_turn; turn += turn_step) {
-    if (turn < machine.swing->lower || turn > machine.swing->upper) continue;
+    const double swing = turn - rules.tracks;
+    if (swing < machine.swing->lower || swing > machine.swing->upper) continue;
     if (turns_clear(settings, base, turn)) turns.push_back(turn);
   }
-  for (double radius = nearest * reach; radius <= farthest * reach - spare; radius += radius_step) {
+  const bool across = is_across(rules.tracks);
+  const double most = (across ? farthest_across : farthest) * reach - rules.spare_reach;
+  const double step = across ? 0.5 * radius_step : radius_step;
+  const int more = static_cast<int>((most - nearest * reach) / step);
+  for (int i = 0; i <= more; ++i) {
+    const double radius = across ? most - i * step : nearest * reach + i * step;
     for (const double turn : turns) {
       const double heading = base.heading + turn;
       const Vector2d off(std::cos(heading), std::sin(heading));
@@ -107,12 +122,19 @@ void for_each_place(const JobSettings& settings, const BasePose& base, double sp
   }
 }
 
+/// The price of a place that leaves less room for later soil than another one, as a swing [rad].
+double price_of_room(const DumpRules& rules, const BasePose& base, const Vector2d& place) {
+  const Vector2d off = PlanFrame({base.x, base.y}, base.heading).of(place);
+  if (is_across(rules.tracks)) return -room_price * off.norm();
+  return room_price * std::max(0.0, rules.off_line - std::abs(off.y()));
+}
+
 std::optional<DumpPlace> in_truck(const JobSettings& settings, const Terrain& ground,
-                                  const BasePose& base, double spare) {
+                                  const BasePose& base, const DumpRules& rules) {
   const JobTruck& truck = *settings.design.truck;
   const Machine& machine = settings.site.machine;
   std::optional<DumpPlace> best;
-  for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, rules, [&](const Vector2d& place, double turn) {
     if (best && std::abs(turn) >= std::abs(best->swing)) return;
     if (!is_well_in(truck.bed, place, inside_bed)) return;
     const auto at = cell_at(ground.bank, place.x(), place.y());
@@ -136,12 +158,13 @@ struct Heap {
 /// Lays soil on the ground of a site.
 class HeapLayer {
  public:
-  HeapLayer(const JobSettings& settings, const JobMap& map, const Terrain& ground)
+  HeapLayer(const JobSettings& settings, const JobMap& map, const Terrain& ground,
+            const DumpRules& rules)
       : map_(map),
         ground_(ground),
         repose_(std::tan(settings.site.soil.angle_of_repose)),
-        volume_(heaped_capacity(settings.site.machine)),
-        cone_(heap_height(settings)) {}
+        volume_(volume_of(settings, rules)),
+        cone_(heap_height(settings, rules)) {}
 
   Heap lay(const Vector2d& place) {
     look_about(place);
@@ -215,7 +238,7 @@ class HeapLayer {
   const Terrain& ground_;
   double repose_;
   double volume_;
-  double cone_;  ///< height of a bucket of soil on level ground [m]
+  double cone_;  ///< height of the load on level ground [m]
   std::vector<Spot> spots_;
 };
 
@@ -236,13 +259,14 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
                                        const Terrain& ground, const BasePose& base,
                                        const DumpRules& rules) {
   const Machine& machine = settings.site.machine;
-  HeapLayer layer(settings, map, ground);
+  HeapLayer layer(settings, map, ground, rules);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(settings, base, rules.spare_reach, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, rules, [&](const Vector2d& place, double turn) {
     const bool has_room = best && !best->overflows;
     const auto at = cell_at(map.target, place.x(), place.y());
-    if ((has_room && std::abs(turn) >= least) || !at || std::isnan(ground.bank.z(at->row, at->col)))
+    if ((has_room && !is_across(rules.tracks) && std::abs(turn) >= least) || !at ||
+        std::isnan(ground.bank.z(at->row, at->col)))
       return;
     if (is_cut(map, *at)) return;
     const bool runs_in = is_near_area(map, place, area_run);
@@ -252,7 +276,8 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
     const double pin = heap.top + drop + machine.bucket_length;
     const double away = std::hypot(place.x() - base.x, place.y() - base.y);
     const double cost = outside_price * heap.outside + std::abs(turn) +
-                        height_price * std::max(0.0, heap.top - base.z);
+                        height_price * std::max(0.0, heap.top - base.z) +
+                        price_of_room(rules, base, place);
     if (!heap.is_allowed || away > pin_reach(machine, pin - base.z)) return;
     const bool overflows = heap.outside > most_outside || !runs_in;
     if (overflows && !may_be_off) return;
@@ -270,6 +295,10 @@ std::optional<DumpPlace> least_outside(const JobSettings& settings, const JobMap
 }
 
 }  // namespace
+
+double beyond_later_soil(const Machine& machine, double beside) {
+  return farthest_across * (machine.boom_length + machine.arm_length) - beside + later_soil;
+}
 
 std::vector<Warning> dump_warnings(const DumpPlace& dump) {
   if (!(dump.outside > 0.5)) return {};
@@ -301,24 +330,26 @@ bool turns_clear(const JobSettings& settings, const BasePose& base, double swing
 std::optional<DumpPlace> dump_place(const JobSettings& settings, const JobMap& map,
                                     const Terrain& ground, const BasePose& base,
                                     const DumpRules& rules) {
-  const double spare = rules.spare_reach;
-  if (settings.design.truck) return in_truck(settings, ground, base, spare);
+  if (settings.design.truck) return in_truck(settings, ground, base, rules);
   const Machine& machine = settings.site.machine;
   const double repose = std::tan(settings.site.soil.angle_of_repose);
-  const double cone = heap_height(settings);
+  const double cone = heap_height(settings, rules);
   std::optional<DumpPlace> best;
   double least = std::numeric_limits<double>::infinity();
-  for_each_place(settings, base, spare, [&](const Vector2d& place, double turn) {
+  for_each_place(settings, base, rules, [&](const Vector2d& place, double turn) {
     const auto at = cell_at(map.target, place.x(), place.y());
     if (!at || !map.dump(at->row, at->col)) return;
     const double surface = surface_of(ground, *at);
     if (std::isnan(surface)) return;
     const double risen =
         std::fmax(ground.loose(at->row, at->col), surface - map.before(at->row, at->col));
-    const double cost = std::abs(turn) + height_price * std::max(0.0, surface - base.z);
+    const double cost = std::abs(turn) + height_price * std::max(0.0, surface - base.z) +
+                        price_of_room(rules, base, place);
     if (cost >= least || !fits(map, place, (risen + cone) / repose)) return;
-    least = cost;
     const double pin = surface + cone + drop + machine.bucket_length;
+    if (std::hypot(place.x() - base.x, place.y() - base.y) > pin_reach(machine, pin - base.z))
+      return;
+    least = cost;
     best = DumpPlace{{place.x(), place.y(), pin}, turn, std::max(0.0, pin - base.z), false};
   });
   if (best) return best;

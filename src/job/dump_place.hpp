@@ -21,7 +21,7 @@ namespace excavplan {
 /// A place to open the bucket over.
 struct DumpPlace {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the bucket pin, in the site's frame [m]
-  double swing = 0.0;   ///< to it from the machine's heading, to the left [rad]
+  double swing = 0.0;   ///< to it from where the front looks, to the left [rad]
   double height = 0.0;  ///< of the pin over the ground under the machine [m]
   bool in_truck = false;
   double outside = 0.0;    ///< share of a bucket that comes to lie beside the dump areas [-]
@@ -35,9 +35,16 @@ std::vector<Warning> dump_warnings(const DumpPlace& dump);
 struct DumpRules {
   double spare_reach = 0.0;   ///< that is not used [m]
   bool may_overflow = false;  ///< where the areas are full, onto the ground around them
+  double load = 1.0;          ///< share of a heaped bucket that is dumped
+  double tracks = 0.0;        ///< their heading from where the front looks [rad]
+  double off_line = 0.0;      ///< of the front's view: nearer, room is left for later soil [m]
 };
 
-/// The place of the dump areas, or the truck, with the least swing from where the machine stands,
+/// So far from its line of work a machine lays soil, in order not to fill what it reaches when it
+/// stands later on the other side of it [m]. @param beside  so far from the line [m]
+double beyond_later_soil(const Machine& machine, double beside);
+
+/// The place of the dump areas, or the truck, with the least swing from where the front looks,
 /// where a bucket of soil stays within the area; where none does, that from which least runs out.
 /// Only places to which the machine turns_clear() count.
 /// @return nothing if none is within reach

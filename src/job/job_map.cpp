@@ -28,6 +28,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double flattest_face = 0.15;  // of a batter; ours [rad]
 constexpr double wide_wall = 0.15;      // of a wall, so that it is none of the floor; ours [m]
 constexpr double least_faces = 0.1;     // share of the design; ours
+constexpr double of_no_floor = 0.005;   // share of cells taken for floor at each end; ours
 constexpr double around_rim = 0.1;      // of a cell, where ground is compared; ours [m]
 constexpr double least_share = 0.5;     // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
@@ -78,15 +79,15 @@ double share_of_faces(const JobMap& map, double heading, bool is_any) {
   return count > 0 ? static_cast<double>(faces) / count : 0.0;
 }
 
-/// Of the cells that count and are no face.
+/// Of the cells that count and are no face; a few of them along edges of faces do not tell.
 AcrossLine floor_of(const JobMap& map, const JobFrame& frame) {
-  Eigen::AlignedBox1d box;
+  std::vector<double> beside;
   for_each_cell(map.counts, [&](Cell at) {
     if (map.counts(at.row, at.col) && !is_face(map.target, at, frame.heading, true))
-      box.extend(frame.of({map.target.x(at.col), map.target.y(at.row)}).tail<1>());
+      beside.push_back(frame.of({map.target.x(at.col), map.target.y(at.row)}).y());
   });
-  if (box.isEmpty()) return {frame.right, frame.left};
-  return {box.min()(0), box.max()(0)};
+  if (beside.empty()) return {frame.right, frame.left};
+  return {quantile(beside, of_no_floor), quantile(beside, 1.0 - of_no_floor)};
 }
 
 /// A bucket's lane does not reach into walls that are too steep to count: only its floor has lanes.
@@ -185,6 +186,8 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   map.dump = map.dump && !map.untouched;
   return map;
 }
+
+bool JobFrame::has_faces_across() const { return faces_across > least_faces; }
 
 Vector2d JobFrame::place(double along, double beside) const {
   return PlanFrame(origin, heading).place(along, beside);

@@ -74,7 +74,12 @@ struct JobFrame {
   bool is_battered = false;   ///< some of the design is neither floor nor wall
   double faces_across = 0.0;  ///< share of what counts of the design that rises across the line
   AcrossLine floor;           ///< of what counts and is no face
+  double tracks = 0.0;        ///< heading of the machine's tracks from the line [rad]
 
+  /// So many that they are to be cut along their fall line.
+  bool has_faces_across() const;
+  /// The machine stands beside the design with its tracks along it, and digs across.
+  bool is_beside() const { return tracks != 0.0; }
   Eigen::Vector2d place(double along, double beside) const;
   Eigen::Vector2d of(const Eigen::Vector2d& place) const;  ///< along and beside
 };

@@ -14,6 +14,7 @@
 #include "job/job_ground.hpp"
 #include "job/job_map.hpp"
 #include "planning/motion_load.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -127,7 +128,7 @@ std::variant<Trajectory, BlockedWay> motion_of(const JobSettings& settings, cons
   motion.machine = machine.name;
   motion.robot_joints = machine.robot_joints;
   if (!step.moves_front()) return motion;
-  auto laid = way_of_step(settings, machine, ground, step, start);
+  auto laid = way_of_step(settings, looking(machine, step.swung), ground, step, start);
   if (auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
   Way& way = std::get<Way>(laid);
   for (WayPose& pose : way.poses) pose.joints[3] += step.swung;

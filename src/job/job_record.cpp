@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "excavplan job";
-constexpr int version = 7;
+constexpr int version = 8;
 constexpr int numbers_of_pose = 6;
 
 constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,

@@ -3,6 +3,7 @@
 #include "job/job_stations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,12 +11,16 @@
 
 #include "base/angles.hpp"
 #include "job/dump_place.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
 
 // Numbers of our own choice.
 constexpr double nearest_work = 1.15;  // before the tracks, so that the bucket has room to curl [m]
+constexpr double nearest_rim = 0.9;    // likewise beside a design, so that it curls over the rim
+constexpr double end_of_sweeps = 0.15;     // of the design, that they need not reach [m]
+constexpr double lane_of_sweeps = 0.33;    // between lanes across it [m]
 constexpr double farthest_work = 0.78;     // of the reach of the front from its pin
 constexpr double farthest_of_wide = 0.86;  // likewise where two ends meet
 constexpr double end_wall = 0.67;     // of that reach to the far end: nearer the bucket opens too
@@ -30,7 +35,6 @@ constexpr double lane_overlap = 0.1;       // of two lanes [m]
 constexpr double beside_edge = 0.6;        // of tracks that stand beside the design [m]
 constexpr double batter_step = 0.1;        // of passes that leave a face in steps [m]
 constexpr std::size_t passes_of_lane = 3;  // that far apart are lanes for volume there
-constexpr double least_across = 0.1;       // share of the design, to cut it so
 constexpr double most_left = 0.5;          // of such faces, for another line of work
 constexpr double widest_lane =
     0.33;  // beside the swing axis, so that the bucket is hardly yawed [m]
@@ -47,16 +51,34 @@ constexpr double onto_face = 0.05;           // of a lane that does not lean yet
 constexpr double off_wall = 0.05;            // of passes beside it [m]
 constexpr double fan_step = 0.1;             // between planes through the swing axis [rad]
 
+/// Both ends and what lies between, at most so far apart.
+std::vector<double> evenly(double from, double to, double step) {
+  const int more = static_cast<int>(std::ceil((to - from) / step - 1e-9));
+  std::vector<double> lanes;
+  for (int i = 0; i <= more; ++i) lanes.push_back(more == 0 ? from : from + (to - from) * i / more);
+  return lanes;
+}
+
+/// Across the faces beside the floor, and in steps along those at its ends.
+std::vector<double> lanes_beside(const JobFrame& frame, const AcrossLine& all, double half) {
+  const double first = std::clamp(frame.floor.right + half, all.right, all.left);
+  const double last = std::clamp(frame.floor.left - half, first, all.left);
+  std::vector<double> lanes = evenly(all.right, first, batter_step);
+  for (const auto& [from, to, step] :
+       {std::array{first, last, lane_of_sweeps}, std::array{last, all.left, batter_step}}) {
+    const auto more = evenly(from, to, step);
+    lanes.insert(lanes.end(), more.begin() + 1, more.end());
+  }
+  return lanes;
+}
+
 std::vector<double> lanes_of(const JobFrame& frame, double bucket_width) {
   const double half = 0.5 * bucket_width + side_margin;
   const double right = frame.right + half;
   const double left = frame.left - half;
   if (left <= right) return {0.5 * (frame.left + frame.right)};
-  const double step = frame.faces_across > least_across ? batter_step : bucket_width - lane_overlap;
-  const int more = static_cast<int>(std::ceil((left - right) / step));
-  std::vector<double> lanes;
-  for (int i = 0; i <= more; ++i) lanes.push_back(right + (left - right) * i / more);
-  return lanes;
+  if (frame.is_beside()) return lanes_beside(frame, {right, left}, half);
+  return evenly(right, left, frame.has_faces_across() ? batter_step : bucket_width - lane_overlap);
 }
 
 /// Lanes that are dug from one place.
@@ -72,7 +94,7 @@ std::vector<std::vector<double>> groups_of(const std::vector<double>& lanes) {
 /// Of a group of lanes.
 JobStation station_at(const JobFrame& frame, double along, const std::vector<double>& lanes) {
   JobStation station = {along, 0.5 * (lanes.front() + lanes.back()), lanes};
-  if (!(frame.faces_across > least_across)) return station;
+  if (!frame.has_faces_across()) return station;
   station.passes = lanes;
   station.lanes.clear();
   for (std::size_t i = 0; i < lanes.size(); i += passes_of_lane) station.lanes.push_back(lanes[i]);
@@ -98,14 +120,13 @@ std::vector<std::vector<double>> groups_within(double widest_lane_beside,
 
 /// Whether a design is dug in benches from few places: not where all lanes run along its faces.
 bool wants_benches(const JobFrame& frame, const std::vector<double>& lanes) {
-  const bool runs_on_faces = frame.is_battered && !(frame.faces_across > least_across);
+  const bool runs_on_faces = frame.is_battered && !frame.has_faces_across();
   return !runs_on_faces && lanes.back() - lanes.front() > least_of_benches;
 }
 
 /// Whether the right side of a bucket in a lane cuts along a face.
 bool leans_right(const JobFrame& frame, double bucket_width, double lane) {
-  return frame.faces_across > least_across &&
-         lane - 0.5 * bucket_width < frame.floor.right - onto_face;
+  return frame.has_faces_across() && lane - 0.5 * bucket_width < frame.floor.right - onto_face;
 }
 
 /// Lanes that passes are made in from one place: first those that lean to the right, if the others
@@ -188,7 +209,10 @@ bool can_begin(const JobFrame& frame, const JobStation& station, const Machine& 
   return free && middle && !map.dump(middle->row, middle->col);
 }
 
-double nearest_of(const Machine& machine) { return machine.track_front + nearest_work; }
+double nearest_of(const JobFrame& frame, const Machine& machine) {
+  if (!frame.is_beside()) return machine.track_front + nearest_work;
+  return looking(machine, frame.tracks).track_front + nearest_rim;
+}
 double at_reach(const Machine& machine, double share) {
   return machine.boom_pin.x() + share * machine.full_length();
 }
@@ -198,7 +222,7 @@ double farthest_of(const Machine& machine, bool is_wide = false) {
 
 /// Along the line, from where all that is near is reached.
 double last_of(const JobFrame& frame, const Machine& machine) {
-  return std::min(frame.far - at_reach(machine, end_wall), frame.near - nearest_of(machine));
+  return std::min(frame.far - at_reach(machine, end_wall), frame.near - nearest_of(frame, machine));
 }
 
 /// A row of places once more, between where they were, where all lanes run up or down the faces:
@@ -207,8 +231,7 @@ double last_of(const JobFrame& frame, const Machine& machine) {
 void add_between(const JobFrame& frame, const Machine& machine, std::size_t first_of_row,
                  std::vector<JobStation>& stations) {
   const std::vector<double> lanes = lanes_of(frame, machine.bucket.width_outside);
-  if (!frame.is_battered || frame.faces_across > least_across || groups_of(lanes).size() < 2)
-    return;
+  if (!frame.is_battered || frame.has_faces_across() || groups_of(lanes).size() < 2) return;
   for (std::size_t i = first_of_row; i < stations.size(); ++i) stations[i].leaves_passes = true;
   const JobStation last = stations.back();
   auto groups = groups_within(widest_between, over_ridges(lanes, machine.bucket.width_outside));
@@ -225,15 +248,31 @@ void add_between(const JobFrame& frame, const Machine& machine, std::size_t firs
   }
 }
 
+/// Whether all that is dug from a place lies within half a bucket of sweeps.
+bool is_swept(const JobFrame& frame, const WorkRange& range, double along,
+              const std::vector<double>& swept, double bucket_width) {
+  const double to = std::min(along + range.far, frame.far - end_of_sweeps);
+  double reached = std::max(along + range.near, frame.near + end_of_sweeps);
+  for (const double at : swept) {
+    if (at - 0.5 * bucket_width > reached) break;
+    reached = std::max(reached, at + 0.5 * bucket_width);
+  }
+  return !swept.empty() && reached >= to;
+}
+
 }  // namespace
+
+bool leaves_fewer_faces(const JobFrame& turned, const JobFrame& straight) {
+  return turned.faces_across <= most_left * straight.faces_across;
+}
 
 JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrain& first) {
   JobFrame straight = frame_of(settings, map);
-  if (!(straight.faces_across > least_across)) return straight;
+  if (!straight.has_faces_across()) return straight;
   JobFrame best = straight;
   for (const double turned : {0.5 * pi, -0.5 * pi}) {
     const JobFrame frame = frame_of(settings, map, turned);
-    if (frame.faces_across > most_left * straight.faces_across) continue;
+    if (!leaves_fewer_faces(frame, straight)) continue;
     if (best.heading != straight.heading && frame.near <= best.near) continue;
     const auto stations = stations_of(frame, settings);
     const Machine& machine = settings.site.machine;
@@ -250,24 +289,23 @@ JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrai
 WorkRange work_range(const JobFrame& frame, const Machine& machine, double along, bool is_wide) {
   const double end = frame.far - end_margin - along;
   WorkRange range;
-  range.near = std::max(nearest_of(machine), frame.near + end_margin - along);
+  range.near = std::max(nearest_of(frame, machine), frame.near + end_margin - along);
   range.far = std::min(farthest_of(machine, is_wide), end);
   range.ends_at_wall = range.far == end && !frame.is_battered;
   return range;
 }
 
-std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings) {
+std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings,
+                                    const std::vector<double>& swept) {
   const Machine& machine = settings.site.machine;
   const auto lanes_of_all = lanes_of(frame, machine.bucket.width_outside);
   const bool is_wide = wants_benches(frame, lanes_of_all);
   const double first =
       frame.far - at_reach(machine, is_wide && frame.is_battered ? end_of_wide : end_wall);
   const double last = last_of(frame, machine);
-  const double shared = frame.faces_across > least_across ? overlap_of_faces : overlap;
-  const double most_back = farthest_of(machine) - nearest_of(machine) - shared;
+  const double shared = frame.has_faces_across() ? overlap_of_faces : overlap;
+  const double most_back = farthest_of(machine) - nearest_of(frame, machine) - shared;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
-  const auto groups =
-      is_wide ? groups_within(widest_for_volume, lanes_of_all) : groups_of(lanes_of_all);
   const double soil = side_of_soil(frame, settings.design);
   // Else every other time from the other side: the machine need not go back across.
   const auto starts_left = [&](int row) { return soil == 0.0 ? row % 2 == 1 : soil < 0.0; };
@@ -275,6 +313,10 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   for (int i = 0; i <= more; ++i) {
     const double step = more == 0 ? 0.0 : (last - first) / more;
     const double along = first + step * i;
+    const bool leaves_faces = is_swept(frame, work_range(frame, machine, along, is_wide), along,
+                                       swept, machine.bucket.width_outside);
+    const auto groups = is_wide || leaves_faces ? groups_within(widest_for_volume, lanes_of_all)
+                                                : groups_of(lanes_of_all);
     const std::size_t first_of_row = stations.size();
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto& lanes = groups[starts_left(i) ? groups.size() - 1 - g : g];
@@ -283,6 +325,8 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
         add_wide(frame, machine.bucket.width_outside, along, lanes, stations);
       else
         stations.push_back(station_at(frame, along, lanes));
+      if (leaves_faces) stations.resize(first_of_group + 1);
+      stations.back().leaves_passes |= leaves_faces;
       stations[first_of_group].has_others_beside = groups.size() > 1;
       if (!is_wide && groups.size() > 1 && i < more)
         stations.back().shapes_from = along + step + farthest_of(machine) - shared;
@@ -292,11 +336,38 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   return stations;
 }
 
+std::vector<JobStation> stations_beside(const JobFrame& across, const JobSettings& settings) {
+  const Machine& machine = settings.site.machine;
+  const double along = across.near - nearest_of(across, machine);
+  std::vector<JobStation> stations;
+  for (const auto& lanes : groups_of(lanes_of(across, machine.bucket.width_outside))) {
+    JobStation station = {along, 0.5 * (lanes.front() + lanes.back()), lanes};
+    station.turned = across.tracks;
+    station.passes = lanes;
+    station.has_others_beside = true;
+    station.is_across = true;
+    station.is_again = true;
+    stations.push_back(station);
+  }
+  if (across.tracks < 0.0) std::reverse(stations.begin(), stations.end());  // to the near end first
+  return stations;
+}
+
+std::vector<double> swept_from(const std::vector<JobStation>& places, const JobFrame& across,
+                               const JobFrame& frame) {
+  std::vector<double> swept;
+  for (const JobStation& place : places) {
+    for (const double lane : place.passes) swept.push_back(frame.of(across.place(0.0, lane)).x());
+  }
+  std::sort(swept.begin(), swept.end());
+  return swept;
+}
+
 std::vector<JobStation> stations_beyond(const JobFrame& frame, const JobSettings& settings) {
   const JobFrame back = reversed(frame);
   const Machine& machine = settings.site.machine;
   const auto lanes_of_all = lanes_of(back, machine.bucket.width_outside);
-  const double along = back.near - nearest_of(machine);
+  const double along = back.near - nearest_of(back, machine);
   std::vector<JobStation> stations;
   if (wants_benches(frame, lanes_of_all)) {
     for (const auto& lanes : groups_within(widest_for_volume, lanes_of_all))
@@ -366,8 +437,9 @@ JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine&
 }
 
 double volume_lane_step(const JobFrame& frame) {
-  return frame.faces_across > least_across ? batter_step * static_cast<double>(passes_of_lane)
-                                           : 0.0;
+  return frame.is_beside() || frame.has_faces_across()
+             ? batter_step * static_cast<double>(passes_of_lane)
+             : 0.0;
 }
 
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

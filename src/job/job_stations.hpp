@@ -28,6 +28,7 @@ struct JobStation {
   bool is_wide = false;             ///< of a design that is wider than one place's lanes
   bool has_others_beside = false;   ///< whose lanes take up what leaves its own
   bool is_beyond = false;           ///< the far end: all of it is along the reversed() line
+  bool is_across = false;           ///< all of it is along the line of places_beside()
   bool is_again = false;            ///< only if the shape of what it reaches is not right
   bool leaves_passes = false;       ///< to the places after it
   bool leaves_floor = false;        ///< likewise all but passes along faces
@@ -47,10 +48,24 @@ inline JobFrame line_of(const JobFrame& frame, const JobStation& station) {
 /// makes most of the faces and the machine can stand and dump everywhere.
 JobFrame work_frame(const JobSettings& settings, const JobMap& map, const Terrain& first);
 
+/// Whether a line of work has so much fewer faces across it than another one that these are worth
+/// it.
+bool leaves_fewer_faces(const JobFrame& turned, const JobFrame& straight);
+
 /// The places of a job in their order, from the far end of the design to beyond its near end. From
 /// each one all that is within reach ahead is dug; where the design is wider than the lanes of one
 /// place, the machine moves aside before it goes back.
-std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings);
+/// @param swept  swept_from() places beside the design: to them passes are left
+std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& settings,
+                                    const std::vector<double>& swept = {});
+
+/// Those beside a design with faces, from where the line of work ends, of which a bucket sweeps
+/// down one face, along the floor and up the other one. @param across  is_beside()
+std::vector<JobStation> stations_beside(const JobFrame& across, const JobSettings& settings);
+
+/// Where along a line of work their passes run, in rising order [m].
+std::vector<double> swept_from(const std::vector<JobStation>& places, const JobFrame& across,
+                               const JobFrame& frame);
 
 /// The places beyond the far end, from which it can be dug as the near end is from the last ones: a
 /// bucket that comes up along a wall leaves it steep in soil of any strength, one that goes down
@@ -120,6 +135,12 @@ JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine&
 /// Between lanes for volume that run along faces of the design, so that they leave steps; 0 where
 /// none do [m].
 double volume_lane_step(const JobFrame& frame);
+
+/// The same place, with the front along a line of work.
+inline BasePose ahead_of(BasePose base, const JobFrame& frame) {
+  base.heading = frame.heading;
+  return base;
+}
 
 /// A machine at a station, on the mean height of the ground under its tracks.
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

@@ -28,6 +28,7 @@
 #include "job/station_place.hpp"
 #include "job/step_motion.hpp"
 #include "job/step_search.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -59,6 +60,7 @@ constexpr double thin_bench = 0.15;          // likewise where its sides are fac
 constexpr double undug = 4.0;                // over the design, in tolerances: not dug yet
 constexpr double most_undug = 0.3;           // share of such cells where passes pay
 constexpr double most_carried = 0.4;         // of a heaped bucket, through a pass
+constexpr double load_of_passes = 0.5;       // likewise, to find a place for it
 constexpr double least_again = 0.04;         // of a pass along a face, to come back for more [m^3]
 constexpr double empty_bucket = 0.006;       // less is not worth a dump [m^3]
 constexpr double least_mass = 15.0;          // in a bucket that was worth it [kg]
@@ -124,15 +126,20 @@ struct SiteJob::State {
     map = map_of(settings, first.bank);
     design = map.target.z;
     frame = work_frame(settings, map, first);
+    side = places_beside(settings, map, first, frame);
+    if (side) digger_across = looking(settings.site.machine, side->line.tracks);
     const Gradient slope = gradient_of(map.target);
     const Eigen::ArrayXXd rise = (slope.x.square() + slope.y.square()).sqrt();
     steps = volume_lane_step(frame) * rise.isNaN().select(0.0, rise);
-    const std::vector<JobStation> beyond = places_beyond();
-    stations = stations_of(frame, settings);
+    const std::vector<JobStation> beyond = side ? std::vector<JobStation>() : places_beyond();
+    stations =
+        stations_of(frame, settings,
+                    side ? swept_from(side->places, side->line, frame) : std::vector<double>());
     if (is_one_group(stations)) {
       can_leave_end = !beyond.empty();
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
     }
+    if (side) stations.insert(stations.end(), side->places.begin(), side->places.end());
     const JobStation last = stations.back(), lookout;
     std::vector<JobStation> ends = beyond;
     // What the near end hides is seen on the way to the far one.
@@ -161,7 +168,13 @@ struct SiteJob::State {
     map.target.z = raised(design, map.target, record.learning.datum.plane());
   }
 
-  JobFrame frame_at(const JobStation& station) const { return line_of(frame, station); }
+  JobFrame frame_at(const JobStation& station) const {
+    return station.is_across ? side->line : line_of(frame, station);
+  }
+  /// As it looks along the line of a station.
+  const Machine& machine_at(const JobStation& station) const {
+    return station.is_across ? digger_across : settings.site.machine;
+  }
 
   /// The present station. Where the soil has proved hard the far end is left to a place beyond:
   /// steep cuts down its wall stall.
@@ -192,7 +205,8 @@ struct SiteJob::State {
       place = nearest_place({settings, map, first, first}, line, station);
     else if (can_stand(line, station, machine, map))
       place = station;
-    return place && dump_place(settings, map, first, base_at(line, *place, first, machine));
+    return place &&
+           dump_place(settings, map, first, ahead_of(base_at(line, *place, first, machine), line));
   }
 
   JobProgress progress() const {
@@ -210,6 +224,7 @@ struct SiteJob::State {
   /// Whether the bucket holds what is worth a dump.
   bool has_load() const { return held() >= empty_bucket; }
   DigStart start_of(const JobStep& dig) const;
+  std::optional<DumpPlace> dump_from(double load) const;
   void lay_aside(const JobStep& dig);
   void drop_present();
   void close_present();
@@ -292,7 +307,9 @@ struct SiteJob::State {
   JobMap map;
   Eigen::ArrayXXd design;  ///< JobMap::target as told
   JobFrame frame;
-  Eigen::ArrayXXd steps;  ///< heights of those that lanes for volume leave of faces [m]
+  std::optional<PlacesBeside> side;  ///< places_beside()
+  Machine digger_across;             ///< JobSettings' machine as it looks from them
+  Eigen::ArrayXXd steps;             ///< heights of those that lanes for volume leave of faces [m]
   std::vector<JobStation> stations;
   bool can_leave_end = false;  ///< to a place beyond
   JobRecord record;
@@ -306,6 +323,9 @@ JobStep SiteJob::State::step_of(JobAction what, const std::string& reason) {
   step.what = what;
   step.base = record.base;
   step.reason = reason;
+  const JobStation& station = stations[record.station];
+  if (what == JobAction::scan && station.is_across)
+    step.swung = wrapped(frame_at(station).heading - record.base.heading);
   return step;
 }
 
@@ -324,6 +344,7 @@ StepTask SiteJob::State::task_of(Work work, const DumpPlace& dump, const BasePos
   task.has_others_beside = station.has_others_beside;
   task.has_faces = frame.is_battered;
   task.has_steps = has_steps();
+  task.tracks = line.tracks;
   task.leaves_floor = work == Work::faces;
   task.keeps_load = finishing && may_keep(0.0);
   task.allowance = finishing ? allowance_of_passes() : allowance * settings.design.tolerance;
@@ -381,6 +402,15 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
   return best_dig(task);
 }
 
+/// From where the machine stands. @param load  share of a heaped bucket
+std::optional<DumpPlace> SiteJob::State::dump_from(double load) const {
+  const JobFrame line = frame_at(stations[record.station]);
+  DumpRules rules = {0.0, true, load, wrapped(record.base.heading - line.heading)};
+  if (side && !line.is_beside())
+    rules.off_line = beyond_later_soil(settings.site.machine, -side->places.front().along);
+  return dump_place(settings, map, ground.expected(), ahead_of(record.base, line), rules);
+}
+
 /// What would be driven into something is laid aside for another dig from here, and so is what is
 /// not to be trusted, if there is another one.
 std::optional<JobStep> SiteJob::State::dig_step(Work work) {
@@ -410,10 +440,9 @@ std::optional<JobStep> SiteJob::State::dig_step(Work work) {
 
 std::optional<JobStep> SiteJob::State::best_step(Work work) {
   const bool finishing = work != Work::volume;
-  const auto dump = dump_place(settings, map, ground.expected(), record.base, {0.0, true});
+  const auto dump = dump_from(finishing ? load_of_passes : 1.0);
   if (!dump) return std::nullopt;
-  BasePose straight = record.base;
-  straight.heading = frame_at(stations[record.station]).heading;
+  BasePose straight = ahead_of(record.base, frame_at(stations[record.station]));
   straight.z += record.learning.height_bias.mean;
   StepTask task = task_of(work, *dump, straight);
   const std::vector<double> benches = finishing ? std::vector<double>() : benches_below();
@@ -453,7 +482,7 @@ std::optional<JobStep> SiteJob::State::best_step(Work work) {
 
 /// With all that the step does before and after the dig.
 void SiteJob::State::foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const {
-  const Machine& machine = settings.site.machine;
+  const Machine& machine = machine_at(stations[record.station]);
   const double carried = step.carried ? loose_mass(settings.site.soil, step.carried->volume) : 0.0;
   const auto after = cycle_of(machine, step.path, dig.dig,
                               cycle_after(dump, step.keeps_load, step.dumps_first ? 0.0 : carried));
@@ -511,7 +540,7 @@ bool SiteJob::State::may_keep(double more) const {
 /// What passes left in the bucket is dumped, and its last ones are seen.
 std::optional<JobStep> SiteJob::State::dump_step() {
   if (!has_load()) return std::nullopt;
-  const auto dump = dump_place(settings, map, ground.expected(), record.base, {0.0, true});
+  const auto dump = dump_from(load_of_passes);
   if (!dump) return std::nullopt;
   JobStep step =
       step_of(JobAction::scan, "to dump what passes left in the bucket, and to see them");
@@ -694,7 +723,7 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
 std::optional<JobStation> SiteJob::State::place_to_dump_from() {
   const JobStation& station = stations[record.station];
   if (!record.has_arrived || !station.is_wide) return std::nullopt;
-  if (dump_place(settings, map, ground.expected(), record.base, {0.0, true})) return std::nullopt;
+  if (dump_from(1.0)) return std::nullopt;
   if (record.moves_to_dump >= most_moves_to_dump) {
     record.lacks_dump = true;
     return std::nullopt;
@@ -872,7 +901,9 @@ void SiteJob::State::end_step(const StepReport& report) {
     ++record.progress.moves;
   }
   if (report.scan) {
-    auto looks = looks_of(*report.scan, record.base);
+    BasePose looking = record.base;
+    looking.heading += step.what == JobAction::move ? 0.0 : step.swung;
+    auto looks = looks_of(*report.scan, looking);
     if (!looks.empty()) record.looks = std::move(looks);
     take_scan(report);
   }

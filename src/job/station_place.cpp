@@ -52,8 +52,9 @@ bool is_tail_clear(const JobSettings& settings, const Vector2d& at) {
 
 bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSettings& settings,
                   const JobMap& map, const Terrain& ground) {
-  const BasePose base = base_at(frame, station, ground, settings.site.machine);
-  const auto dump = dump_place(settings, map, ground, base);
+  const BasePose base = ahead_of(base_at(frame, station, ground, settings.site.machine), frame);
+  const auto dump =
+      dump_place(settings, map, ground, base, {0.0, frame.is_beside(), 1.0, frame.tracks});
   if (!dump) return false;
   const double swing = dump->swing + std::copysign(spare_turn, dump->swing);
   bool clear = true;
@@ -67,6 +68,25 @@ bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSet
 }
 
 }  // namespace
+
+std::optional<PlacesBeside> places_beside(const JobSettings& settings, const JobMap& map,
+                                          const Terrain& first, const JobFrame& frame) {
+  if (!frame.has_faces_across()) return std::nullopt;
+  std::optional<PlacesBeside> best;
+  for (const double turned : {0.5 * pi, -0.5 * pi}) {
+    PlacesBeside beside = {frame_of(settings, map, turned), {}};
+    beside.line.tracks = -turned;
+    if (!leaves_fewer_faces(beside.line, frame)) continue;
+    for (const JobStation& each : stations_beside(beside.line, settings)) {
+      if (can_stand(beside.line, each, settings.site.machine, map) &&
+          is_tail_clear(settings, beside.line.place(each.along, each.beside)) &&
+          stands_clear(each, beside.line, settings, map, first))
+        beside.places.push_back(each);
+    }
+    if (beside.places.size() > (best ? best->places.size() : 0)) best = std::move(beside);
+  }
+  return best;
+}
 
 bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& station) {
   if (!is_tail_clear(on.settings, frame.place(station.along, station.beside))) return false;

@@ -17,6 +17,19 @@
 
 namespace excavplan {
 
+/// Places beside a design with the tracks along it, and their line across it.
+struct PlacesBeside {
+  JobFrame line;
+  std::vector<JobStation> places;  ///< where the machine can stand, turn and dump
+};
+
+/// Those on the side that has more of them; nothing where no face runs along the line of work, some
+/// do across it, or there is no such place.
+/// @param first  ground before the job
+/// @param frame  of the line of work
+std::optional<PlacesBeside> places_beside(const JobSettings& settings, const JobMap& map,
+                                          const Terrain& first, const JobFrame& frame);
+
 /// What tells where a machine can stand.
 struct Standing {
   const JobSettings& settings;

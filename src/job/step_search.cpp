@@ -16,6 +16,7 @@
 #include "base/angles.hpp"
 #include "base/parallel.hpp"
 #include "planning/simulated_dig.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -104,6 +105,12 @@ constexpr double steepest_drag = 1.0;                                // down a f
 constexpr double steepest_floor = 0.15;                              // else it is a face [rad]
 constexpr double on_face = 0.2;                                      // where its slope is told [m]
 const std::array<double, 2> steeper = {0.1, 0.3};                    // of a dig than its face [rad]
+const std::array<double, 2> sweep_rakes = {0.42, 0.5};               // of a bucket along its floor
+const std::array<double, 4> sweep_layers = {0.1, 0.18, 0.3, 1.0};    // that one takes off [m]
+const std::array<double, 3> sweep_ends = {0.07, 0.3, 0.6};           // before the near end [m]
+constexpr double shortest_sweep = 0.6;                               // [m]
+constexpr double sweep_fall_over = 0.25;                 // where its floor's fall is told [m]
+const std::array<double, 2> sweep_angles = {0.15, 1.4};  // of its penetration [rad]
 const std::array<double, 2> fills = {0.9,
                                      1.15};  // soil in the way of the bucket, over its capacity
 
@@ -167,7 +174,7 @@ class StepSearch {
  public:
   explicit StepSearch(const StepTask& task)
       : task_(task),
-        machine_(task.settings.site.machine),
+        machine_(looking(task.settings.site.machine, task.tracks)),
         simulator_(machine_, with_strength(task.settings.site.soil, task.strength_factor),
                    task.density_percent),
         hard_(machine_, with_strength(task.settings.site.soil, task.hard_factor),
@@ -349,6 +356,7 @@ class StepSearch {
     if (task_.finishing) return lay_out_passes(lane);
     const WorkLine& line = lanes_[lane].line;
     if (!may_yield(lanes_[lane], least_of_volume())) return;
+    if (task_.tracks != 0.0) lay_out_sweeps(lane);
     for (double start = line.far; start > line.near + start_step; start -= start_step) {
       if (!is_worth_a_dig(lanes_[lane], start)) continue;
       lay_out_layers(lane, start, attitudes, rules_in(lane));
@@ -418,6 +426,7 @@ class StepSearch {
   /// Along the floor; where a bank stands in the lane by layers from its top, since the bucket
   /// cannot begin within it.
   void lay_out_passes(std::size_t lane) {
+    if (task_.tracks != 0.0) return lay_out_sweeps(lane);
     if (lanes_[lane].leans) return lay_out_along_face(lane);
     DigPathOptions rules = rules_in(lane);
     rules.drag_keeps_angle = true;
@@ -478,6 +487,51 @@ class StepSearch {
   double longest_drag(const Lane& lane, double start, double angle) const {
     const double down = drop_to(lane, start, lane.floor(start));
     return start - down / std::tan(angle) - nearest(lane.line, angle);
+  }
+
+  /// Down the far face, along the floor and up the near face, in layers for volume.
+  void lay_out_sweeps(std::size_t lane) {
+    const Lane& at = lanes_[lane];
+    for (double start = at.line.far; start > at.line.near + shortest_sweep; start -= start_step) {
+      if (!is_worth_a_dig(at, start)) continue;
+      for (const double layer : sweep_layers) {
+        if (task_.finishing && layer < sweep_layers.back()) continue;
+        const auto floor = [&at, layer](double x) {
+          const double ground = (at.mean(x - on_face) + at.mean(x) + at.mean(x + on_face)) / 3.0;
+          return std::isnan(ground) ? at.floor(x) : std::max(at.floor(x), ground - layer);
+        };
+        for (const double rake : sweep_rakes) {
+          if (sweep(lane, start, rake, floor) && task_.finishing) break;
+        }
+      }
+    }
+  }
+
+  /// From a start to some ends: for volume to where the bucket is full, else as far as can be.
+  /// @return whether the front can
+  bool sweep(std::size_t lane, double start, double rake, const GroundProfile& floor) {
+    const Lane& at = lanes_[lane];
+    DigPathOptions rules = rules_in(lane);
+    rules.floor = floor;
+    rules.drag_follows_floor = true;
+    rules.penetration_clearance = 0.0;
+    const double rise = floor(start + sweep_fall_over) - floor(start - sweep_fall_over);
+    const double fall = rise / (2.0 * sweep_fall_over);
+    const double angle = std::atan(fall) + rake;
+    if (!(angle > sweep_angles.front() && angle < sweep_angles.back())) return false;
+    const double from = start - drop_to(at, start, floor(start)) / (std::tan(angle) - fall);
+    const std::size_t before_all = candidates_.size();
+    double last = 0.0;
+    for (const double before : sweep_ends) {
+      const double longest = from - at.line.near - before;
+      const double drag =
+          task_.finishing ? longest : std::min(longest, sweep_that_fills(at, from, floor));
+      if (drag == last || !(drag > shortest_sweep)) continue;
+      add(lane, {angle, 1.0, drag}, start, rules);
+      if (task_.finishing && candidates_.size() > before_all) break;
+      last = drag;
+    }
+    return candidates_.size() > before_all;
   }
 
   /// Where the ground before a start comes into shape for a while: to cut on would only roughen
@@ -624,6 +678,17 @@ class StepSearch {
       x -= cell;
     }
     return std::max(shortest_drag, from - x);
+  }
+
+  /// The length of a sweep that meets a bucket of soil.
+  double sweep_that_fills(const Lane& lane, double from, const GroundProfile& floor) const {
+    const double cell = lane.view.surface().cell_size;
+    const double wanted = fills.back() * capacity_ / bulking() / machine_.bucket.width_outside;
+    double met = 0.0;
+    double x = from;
+    for (; met < wanted && x > lane.line.near; x -= cell)
+      met += cell * std::max(0.0, lane.mean(x) - floor(x));
+    return from - x;
   }
 
   void add(std::size_t lane, const DigParameters& parameters, double start,
@@ -779,7 +844,7 @@ class StepSearch {
   }
 
   const StepTask& task_;
-  const Machine& machine_;
+  const Machine machine_;  ///< as it looks along the lines
   HeightMapSimulator simulator_;
   HeightMapSimulator hard_;
   HeightMapSimulator firm_;

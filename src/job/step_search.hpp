@@ -36,6 +36,7 @@ struct StepTask {
   bool finishing = false;          ///< along the floor, for its shape
   bool has_faces = false;          ///< some of the design is neither floor nor wall
   bool has_steps = false;          ///< faces are cut in steps by lanes along them
+  double tracks = 0.0;             ///< JobFrame::tracks [rad]
   bool leaves_floor = false;       ///< of passes all but those
   bool keeps_load = false;         ///< a load that the bucket can keep is not dumped
   double carried = 0.0;            ///< loose, in the bucket [m^3]

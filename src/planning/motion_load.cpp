@@ -11,13 +11,10 @@
 #include "base/text.hpp"
 #include "machine/machine_mass.hpp"
 #include "planning/front_load.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
-
-/// Half of the gauge over the x of the front edge: half of the tumbler distance; ours, from 0.69 of
-/// the ZX120's data sheet and alike of others.
-constexpr double side_edge = 0.69;
 
 bool is_off_the_dig(DigPhase phase) {
   return phase < DigPhase::penetrate || phase > DigPhase::scoop;

@@ -104,6 +104,7 @@ Json job_step_json(const JobStep& step) {
     json["keeps_load"] = step.keeps_load;
     json["predicted"] = predicted_json(step.predicted);
   }
+  if (step.what == JobAction::scan) json["swung_rad"] = step.swung;
   json["dumps_first"] = step.dumps_first;
   json["truck"] = step.truck ? Json(*step.truck) : Json();
   json["trustworthy"] = step.trustworthy;

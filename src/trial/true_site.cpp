@@ -17,6 +17,7 @@
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
+#include "simulation/across_tracks.hpp"
 #include "trial/dump_places.hpp"
 #include "trial/plan_polygon.hpp"
 #include "trial/seen_first.hpp"
@@ -98,7 +99,9 @@ struct TrueSite::State {
   State(const HiddenSite& of, Machine digger, TruthOptions how)
       : site(of), machine(std::move(digger)), options(std::move(how)), ground(of.ground) {
     density = mean_density(site);
+    const Machine beside = looking(machine, 0.5 * pi);
     simulator = options.simulator.make(machine, site.soil, density);
+    simulator_beside = options.simulator.make(beside, site.soil, density);
     seen_at = seen_at_first(site, trial_begin);
     const HeightMap surface = ground.surface();
     seen_height = seen_at.isNaN().select(seen_at, surface.z);
@@ -170,12 +173,17 @@ struct TrueSite::State {
     done.time = first.time;
     done.energy = first.energy;
     if (job.dumps_first) done.report.joint_work = first.energy;
-    take_scan(done);
+    take_scan(done, job.swung);
     return done;
   }
-  Scan scan();
-  void take_scan(TrueStep& done) {
-    done.report.scan = scan();
+  DigResult dug_along(const DigLine& line, const DigPath& path, double swung) const {
+    return dig_along(is_across(swung) ? *simulator_beside : *simulator, looking(machine, swung),
+                     ground, {line, soil_voids(site.soil, density), path});
+  }
+  /// @param swung  of the upper structure from the tracks, as it looks ahead [rad]
+  Scan scan(double swung = 0.0);
+  void take_scan(TrueStep& done, double swung) {
+    done.report.scan = scan(swung);
     done.scan_time = options.scan_time;
     done.time += options.scan_time;
   }
@@ -186,6 +194,7 @@ struct TrueSite::State {
   Terrain ground;
   double density = 0.0;
   std::unique_ptr<const SoilSimulator> simulator;
+  std::unique_ptr<const SoilSimulator> simulator_beside;  ///< of digs across the tracks
   BasePose known, real;
   double time = trial_begin;
   std::uint64_t step = 0;   ///< steps done
@@ -234,8 +243,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
     return height_at(surface, at.x(), at.y()) - line.z;
   });
   const Terrain before = ground;
-  const DigResult dug =
-      dig_along(*simulator, machine, ground, {line, soil_voids(site.soil, density), path});
+  const DigResult dug = dug_along(line, path, job.swung);
   apply(dug.patch, ground);
   const Vector2d dump_at = error.moved(job.dump.head<2>());
   const double carried = held;
@@ -262,7 +270,7 @@ TrueStep TrueSite::State::dig(const JobStep& job) {
   done.report.stalled = dug.stall.has_value();
   done.report.joint_work = done.energy;
   done.report.payload_mass = as_the_scale_reads(dug.payload_mass);
-  if (options.scans_each_dig) take_scan(done);
+  if (options.scans_each_dig) take_scan(done, job.swung);
   return done;
 }
 
@@ -317,12 +325,15 @@ TrueStep TrueSite::State::move(const JobStep& job) {
   return done;
 }
 
-Scan TrueSite::State::scan() {
+Scan TrueSite::State::scan(double swung) {
+  BasePose looking_there = real;
+  looking_there.heading = wrapped(real.heading + swung);
   const std::uint64_t seed = Random(options.seed, scan_stream, scans++).bits();
   const HeightMap surface = ground.surface();
   SiteSensor sensor = site.known.sensor;
   sensor.noise = std::max(sensor.noise, least_noise);
-  Scan scan = scan_site(with_obstacles(surface, site.known.job.obstacles), sensor, real, seed);
+  Scan scan =
+      scan_site(with_obstacles(surface, site.known.job.obstacles), sensor, looking_there, seed);
   scan.name = "scan " + std::to_string(scans);
   const HeightMap& cells = site.first_scan;
   for (const auto& cloud : scan.clouds) {

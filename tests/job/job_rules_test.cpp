@@ -12,9 +12,11 @@
 
 #include <excavplan/job/site_job.hpp>
 
+#include "base/angles.hpp"
 #include "job/job_map.hpp"
 #include "job/job_record.hpp"
 #include "job/job_stations.hpp"
+#include "job/station_place.hpp"
 #include "job/trench_job.hpp"
 
 /// @file
@@ -46,7 +48,13 @@ class PitJob {
       : half_(0.5 * width), site_(width, depth, change) {
     const JobMap map = map_of(of_.settings, first_.bank);
     frame_ = work_frame(of_.settings, map, first_);
-    stations = stations_of(frame_, of_.settings);
+    beside = places_beside(of_.settings, map, first_, frame_);
+    if (!beside) {
+      stations = stations_of(frame_, of_.settings);
+      return;
+    }
+    stations = stations_of(frame_, of_.settings, swept_from(beside->places, beside->line, frame_));
+    stations.insert(stations.end(), beside->places.begin(), beside->places.end());
   }
 
   /// A scan shows the pit as deep as that; the ground beside it is level.
@@ -76,7 +84,8 @@ class PitJob {
     JobRecord record = load_record(of_.path());
     record.present.reset();
     record.station = station;
-    record.base = base_at(frame_, stations[station], first_, of_.settings.site.machine);
+    const JobFrame& line = stations[station].is_across ? beside->line : frame_;
+    record.base = base_at(line, stations[station], first_, of_.settings.site.machine);
     record.has_arrived = true;
     change(record);
     save_record(of_.path(), record);
@@ -95,6 +104,7 @@ class PitJob {
   JobProgress progress() const { return job_.progress(); }
 
   std::vector<JobStation> stations;
+  std::optional<PlacesBeside> beside;  ///< those at the end
 
  private:
   double half_;  ///< of the width [m]
@@ -130,18 +140,26 @@ TEST(JobRules, FacesOfGroundThatWasNotDugTakeNoPasses) {
   EXPECT_EQ(trench.next().what, JobAction::dig);
 }
 
+/// The machine cannot stand beside the trench, so that it is shaped from its line.
+void keep_off_side(PlainSiteFolder& of) {
+  of.site["keep_out"] = {
+      {{"kind", "meadow"}, {"polygon", {{3.0, -4.2}, {5.0, -4.2}, {5.0, -3.2}, {3.0, -3.2}}}}};
+}
+
 TEST(JobRules, ATrenchWhoseWallsLeanBackTakesMore) {
   const auto lean = [](PlainSiteFolder& of) {
     of.site["design"]["wall_horizontal_per_vertical"] = 1.0;
+    keep_off_side(of);
   };
   EXPECT_EQ(after_passes(PitJob(narrow, 0.4, lean), 0, 29), JobAction::finish);
   EXPECT_NE(after_passes(PitJob(narrow, 0.4, lean), 0, 30), JobAction::finish);
 }
 
 /// A trench with walls that lean back so far that its top is wide.
-PitJob battered_trench() {
-  return PitJob(narrow, 0.55, [](PlainSiteFolder& of) {
+PitJob battered_trench(bool is_free_beside = false) {
+  return PitJob(narrow, 0.55, [&](PlainSiteFolder& of) {
     of.site["design"]["wall_horizontal_per_vertical"] = 1.73;
+    if (!is_free_beside) keep_off_side(of);
   });
 }
 
@@ -167,6 +185,32 @@ TEST(JobRules, PassesBeginWhereLanesForVolumeLeaveStepsOfAFace) {
   });
   trench.stand_at(4, [](JobRecord& record) { record.fruitless_digs = no_more; });
   EXPECT_EQ(trench.next().what, JobAction::finish);
+}
+
+TEST(JobRules, FacesBesideAMachineAreSweptAcrossItsTracks) {
+  PitJob trench = battered_trench(true);
+  ASSERT_TRUE(trench.beside);
+  trench.see([](double x, double y) {
+    if (x < 2.0 || x > 6.0) return 0.0;
+    const double face = (std::abs(y) - 0.5 * narrow) / 1.73;
+    return std::min(0.0, -0.55 + std::max(0.0, face) + 0.07);
+  });
+  const auto first = std::find_if(trench.stations.begin(), trench.stations.end(),
+                                  [](const JobStation& each) { return each.is_across; });
+  trench.stand_at(static_cast<std::size_t>(first - trench.stations.begin()) + 2);
+  int passes = 0;
+  for (; trench.next().what == JobAction::finish && passes < 5; ++passes) {
+    const JobStep pass = trench.next();
+    EXPECT_TRUE(pass.trustworthy);
+    EXPECT_NEAR(pass.swung, 0.5 * pi, 1e-6);
+    EXPECT_LT(pass.dump.y(), 6.8);
+    EXPECT_GT(pass.dump.y(), 3.0);
+    trench.done(pass.predicted.payload_mass);
+  }
+  EXPECT_GT(passes, 1);
+  const JobStep look = trench.next();
+  ASSERT_EQ(look.what, JobAction::scan);
+  EXPECT_NEAR(look.swung, 0.5 * pi, 1e-6) << "it looks where it digs";
 }
 
 TEST(JobRules, FacesAreShapedBeforeWhatFallsOffThemIsDug) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/angles.hpp"
+#include "simulation/across_tracks.hpp"
 #include "site/scan_digest.hpp"
 #include "support/errors.hpp"
 #include "support/plain_site_folder.hpp"
@@ -51,6 +53,58 @@ TEST(TrueSite, ADigTakesItsSoilToTheDump) {
   EXPECT_EQ(done.report.time, truth.time());
   EXPECT_GT(height_at(truth.ground().surface(), 2.5, 3.5), 0.2);
   EXPECT_LT(height_at(truth.ground().surface(), 4.5, 0.0), -0.1);
+}
+
+TEST(TrueSite, ADigAcrossTheTracksIsWhereTheFrontLooks) {
+  const HiddenSite site = SiteAtOrigin().read();
+  TrueSite truth(site, zx120());
+  JobStep across = dig_step();
+  across.swung = 0.5 * pi;
+  EXPECT_GT(truth.execute(across).payload_mass, 100.0);
+  EXPECT_LT(height_at(truth.ground().surface(), 0.0, 4.5), -0.1);
+  EXPECT_EQ(height_at(truth.ground().surface(), 4.5, 0.0), 0.0);
+}
+
+TEST(TrueSite, AcrossItsTracksAMachineTipsSooner) {
+  SiteAtOrigin folder;
+  folder.truth["strength_factor"] = 12.0;
+  const HiddenSite site = folder.read();
+  const auto stall = [&](double swung) {
+    TrueSite truth(site, zx120());
+    JobStep step = dig_step(7.0);
+    step.path =
+        std::get<DigPath>(make_dig_path(zx120(), {1.2, 0.5, 1.5}, 7.0, [](double) { return 0.0; }));
+    step.swung = swung;
+    return truth.execute(step).stall;
+  };
+  const auto along = stall(0.0), across = stall(0.5 * pi);
+  ASSERT_TRUE(along && across);
+  EXPECT_EQ(across->cause, along->cause);
+  EXPECT_NEAR(across->held / along->held, side_edge, 0.01);
+}
+
+TEST(TrueSite, AScanIsMadeWhereTheFrontLooks) {
+  SiteAtOrigin folder;
+  folder.site["sensor"]["field_of_view_deg"] = {40, 45};
+  const HiddenSite site = folder.read();
+  const auto mean_of = [&](double swung) {
+    TrueSite truth(site, zx120());
+    JobStep look = step_of(JobAction::scan);
+    look.swung = swung;
+    const TrueStep done = truth.execute(look);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    for (const auto& cloud : done.report.scan->clouds) {
+      for (const auto& point : cloud->points) sum += point;
+      count += cloud->points.size();
+    }
+    return Eigen::Vector3d(sum / static_cast<double>(count));
+  };
+  const Eigen::Vector3d ahead = mean_of(0.0), aside = mean_of(0.5 * pi);
+  EXPECT_GT(ahead.x(), 2.0);
+  EXPECT_LT(std::abs(ahead.y()), 0.5);
+  EXPECT_GT(aside.y(), 2.0);
+  EXPECT_LT(std::abs(aside.x()), 0.5);
 }
 
 TEST(TrueSite, SolidsAreConserved) {

@@ -54,9 +54,11 @@ struct JobStep {
   long long id = 0;                  ///< rises from step to step
   JobAction what = JobAction::stop;  ///< what to do
   BasePose base;                     ///< where the machine stands; of a move: where it goes
-  double swung = 0.0;                ///< of the line of the dig, to the left of the base [rad]
-  double lane = 0.0;                 ///< of that line to the left of the swing axis [m]
-  DigPath path;                      ///< of a dig, in the frame of its line (dig_line())
+  /// Of the line of the dig, or of a scan the middle of what it sees, to the left of the base
+  /// [rad].
+  double swung = 0.0;
+  double lane = 0.0;  ///< of that line to the left of the swing axis [m]
+  DigPath path;       ///< of a dig, in the frame of its line (dig_line())
   /// Of the bucket pin where the bucket opens, where it does, in the site's frame [m].
   Eigen::Vector3d dump = Eigen::Vector3d::Zero();
   /// The bucket does not open: it goes back with its load, to which the next dig adds.
