@@ -13,6 +13,7 @@
 #include "ground/grid_cells.hpp"
 #include "job/step_search.hpp"
 #include "scans/noisy_scan.hpp"
+#include "simulation/across_tracks.hpp"
 #include "site/site_survey.hpp"
 
 namespace excavplan {
@@ -102,8 +103,8 @@ void forget_changed(const Terrain& before, const TerrainPatch& patch, Eigen::Arr
 }  // namespace
 
 DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const DigLine& line,
-                    const DigPath& path) {
-  const Machine& machine = settings.site.machine;
+                    const DigPath& path, double swung) {
+  const Machine machine = looking(settings.site.machine, swung);
   const SoilVoids voids = soil_voids(settings.site.soil, settings.density_percent);
   for (double strength = 1.0;; strength *= softer) {
     const HeightMapSimulator simulator(machine, with_strength(settings.site.soil, strength),
@@ -139,7 +140,7 @@ void JobGround::doubt_changed(const Eigen::ArrayXXd& before) {
 void JobGround::dig(const JobStep& step, double height_bias) {
   DigLine line = dig_line(step.base, step.swung, step.lane);
   line.z += height_bias;
-  const DigResult result = whole_dig(settings_, expected_, line, step.path);
+  const DigResult result = whole_dig(settings_, expected_, line, step.path, step.swung);
   forget_changed(expected_, result.patch, seen_);
   apply(result.patch, expected_);
   const bool carries = step.carried && !step.dumps_first;

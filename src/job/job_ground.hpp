@@ -33,9 +33,9 @@ struct ScanNews {
 };
 
 /// A dig of a job to its end: where the soil as told would stall it, in one as much softer as lets
-/// it through.
+/// it through. @param swung  of the front from the tracks [rad]
 DigResult whole_dig(const JobSettings& settings, const Terrain& ground, const DigLine& line,
-                    const DigPath& path);
+                    const DigPath& path, double swung);
 
 /// What was dug and dumped since the last scan.
 struct UnseenDigs {

@@ -70,8 +70,8 @@ Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLi
 /// What the dig loads the joints with, and the ground that it leaves, in the frame of the way.
 DigLoad load_of(const JobSettings& settings, const Terrain& ground, const JobStep& step,
                 const DigLine& line) {
-  const DigResult dig =
-      whole_dig(settings, ground, dig_line(step.base, step.swung, step.lane), step.path);
+  const DigResult dig = whole_dig(settings, ground, dig_line(step.base, step.swung, step.lane),
+                                  step.path, step.swung);
   Terrain after = ground;
   apply(dig.patch, after);
   DigLoad load;

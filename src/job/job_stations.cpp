@@ -211,7 +211,7 @@ bool can_begin(const JobFrame& frame, const JobStation& station, const Machine& 
 
 double nearest_of(const JobFrame& frame, const Machine& machine) {
   if (!frame.is_beside()) return machine.track_front + nearest_work;
-  return looking(machine, frame.tracks).track_front + nearest_rim;
+  return looking(machine, -frame.tracks).track_front + nearest_rim;
 }
 double at_reach(const Machine& machine, double share) {
   return machine.boom_pin.x() + share * machine.full_length();

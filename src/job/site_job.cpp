@@ -127,14 +127,13 @@ struct SiteJob::State {
     design = map.target.z;
     frame = work_frame(settings, map, first);
     side = places_beside(settings, map, first, frame);
-    if (side) digger_across = looking(settings.site.machine, side->line.tracks);
+    if (side) digger_across = looking(settings.site.machine, -side->line.tracks);
     const Gradient slope = gradient_of(map.target);
     const Eigen::ArrayXXd rise = (slope.x.square() + slope.y.square()).sqrt();
     steps = volume_lane_step(frame) * rise.isNaN().select(0.0, rise);
-    const std::vector<JobStation> beyond = side ? std::vector<JobStation>() : places_beyond();
-    stations =
-        stations_of(frame, settings,
-                    side ? swept_from(side->places, side->line, frame) : std::vector<double>());
+    stations = stations_of(frame, settings);
+    const bool is_swept = leave_faces_to_side();
+    const std::vector<JobStation> beyond = is_swept ? std::vector<JobStation>() : places_beyond();
     if (is_one_group(stations)) {
       can_leave_end = !beyond.empty();
       stations = clear_of_obstacles(std::move(stations), frame, settings, map, first);
@@ -160,6 +159,19 @@ struct SiteJob::State {
     if (again.empty()) again.push_back(last);
     for (const auto& more : {ends, looks, again, looks})
       stations.insert(stations.end(), more.begin(), more.end());
+  }
+
+  /// Where a row leaves passes to places beside, if one does. @return whether all do
+  bool leave_faces_to_side() {
+    if (!side) return false;
+    auto rows = stations_of(frame, settings, swept_from(side->places, side->line, frame));
+    if (rows.size() == stations.size()) {
+      side.reset();
+      return false;
+    }
+    stations = std::move(rows);
+    return std::none_of(stations.begin(), stations.end(),
+                        [](const JobStation& each) { return each.is_again; });
   }
 
   /// In the frame of the ground as it is known.
@@ -406,8 +418,10 @@ std::optional<StepDig> SiteJob::State::best_dig_of(StepTask& task,
 std::optional<DumpPlace> SiteJob::State::dump_from(double load) const {
   const JobFrame line = frame_at(stations[record.station]);
   DumpRules rules = {0.0, true, load, wrapped(record.base.heading - line.heading)};
-  if (side && !line.is_beside())
-    rules.off_line = beyond_later_soil(settings.site.machine, -side->places.front().along);
+  if (side && !line.is_beside()) {
+    const double here_is = side->line.of({record.base.x, record.base.y}).x();
+    rules.off_line = beyond_later_soil(settings.site.machine, here_is - side->places.front().along);
+  }
   return dump_place(settings, map, ground.expected(), ahead_of(record.base, line), rules);
 }
 
@@ -440,7 +454,7 @@ std::optional<JobStep> SiteJob::State::dig_step(Work work) {
 
 std::optional<JobStep> SiteJob::State::best_step(Work work) {
   const bool finishing = work != Work::volume;
-  const auto dump = dump_from(finishing ? load_of_passes : 1.0);
+  auto dump = dump_from(finishing ? load_of_passes : 1.0);
   if (!dump) return std::nullopt;
   BasePose straight = ahead_of(record.base, frame_at(stations[record.station]));
   straight.z += record.learning.height_bias.mean;
@@ -454,6 +468,10 @@ std::optional<JobStep> SiteJob::State::best_step(Work work) {
     dig = best_dig(task);
   }
   if (!dig) return std::nullopt;
+  const double load = held() + dig->dig.payload_volume;
+  if (finishing && load > load_of_passes * heaped_capacity(settings.site.machine)) {
+    if (const auto for_more = dump_from(1.0)) dump = for_more;
+  }
   JobStep step = step_of(finishing ? JobAction::finish : JobAction::dig);
   step.swung = wrapped(straight.heading + dig->turned - record.base.heading);
   step.lane = dig->lane;

@@ -11,6 +11,7 @@
 #include "base/angles.hpp"
 #include "base/plan_geometry.hpp"
 #include "job/dump_place.hpp"
+#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -22,8 +23,9 @@ constexpr double off_cut = 0.3;                    // of the tracks from ground 
 constexpr double deepest_rut = 0.15;               // more is dug
 constexpr std::array off_drops = {0.5, 0.8, 1.1};  // from ground that is deeper than that
 constexpr double highest_soil = 0.2;               // under the tracks
-constexpr double spare_reach = 0.5;                // to the dump, since what is laid there grows
-constexpr double spare_turn = 0.3;                 // to it [rad], likewise
+constexpr double across_margin = 0.15;     // of a design, that need not be reached from beside it
+constexpr double spare_reach = 0.5;        // to the dump, since what is laid there grows
+constexpr double spare_turn = 0.3;         // to it [rad], likewise
 constexpr double off_place = 0.1;          // where the machine comes to stand along the line
 constexpr double shift_step = 0.4;         // between the places that are looked at
 constexpr double farthest_for_room = 1.3;  // to a place from which dump areas are not full [m]
@@ -69,17 +71,39 @@ bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSet
 
 }  // namespace
 
+namespace {
+
+/// Its swing goes there, and it stands on the sides of its tracks.
+bool can_look_across(const Machine& machine, double swung) {
+  const bool turns = machine.swing && machine.swing->lower < swung && swung < machine.swing->upper;
+  const bool stands =
+      !machine.body || std::abs(machine.body->centre.x()) < side_edge * machine.body->front_edge;
+  return turns && stands;
+}
+
+bool reaches_across(const JobFrame& line, const JobStation& place, const Machine& machine) {
+  return place.along + work_range(line, machine, place.along).far > line.far - across_margin;
+}
+
+}  // namespace
+
 std::optional<PlacesBeside> places_beside(const JobSettings& settings, const JobMap& map,
                                           const Terrain& first, const JobFrame& frame) {
   if (!frame.has_faces_across()) return std::nullopt;
+  const Machine& machine = settings.site.machine;
+  Terrain dug = first;
+  dug.bank.z = map.target.z.isNaN().select(first.bank.z, first.bank.z.min(map.target.z));
   std::optional<PlacesBeside> best;
   for (const double turned : {0.5 * pi, -0.5 * pi}) {
     PlacesBeside beside = {frame_of(settings, map, turned), {}};
     beside.line.tracks = -turned;
-    if (!leaves_fewer_faces(beside.line, frame)) continue;
-    for (const JobStation& each : stations_beside(beside.line, settings)) {
-      if (can_stand(beside.line, each, settings.site.machine, map) &&
-          is_tail_clear(settings, beside.line.place(each.along, each.beside)) &&
+    const auto all = stations_beside(beside.line, settings);
+    if (!leaves_fewer_faces(beside.line, frame) || !can_look_across(machine, -beside.line.tracks) ||
+        !reaches_across(beside.line, all.front(), machine))
+      continue;
+    for (const JobStation& each : all) {
+      if (can_stand(beside.line, each, machine, map) &&
+          can_stand_now({settings, map, first, dug}, beside.line, each) &&
           stands_clear(each, beside.line, settings, map, first))
         beside.places.push_back(each);
     }

@@ -174,7 +174,7 @@ class StepSearch {
  public:
   explicit StepSearch(const StepTask& task)
       : task_(task),
-        machine_(looking(task.settings.site.machine, task.tracks)),
+        machine_(looking(task.settings.site.machine, -task.tracks)),
         simulator_(machine_, with_strength(task.settings.site.soil, task.strength_factor),
                    task.density_percent),
         hard_(machine_, with_strength(task.settings.site.soil, task.hard_factor),

@@ -128,8 +128,13 @@ void Surroundings::replace(const HeightMap& by) {
   top_ = highest_.maxCoeff();
 }
 
+/// Of the tracks, which lie along or across what the front looks at.
+double Surroundings::track_top() const {
+  return track_height * std::max(undercarriage_.x_max, undercarriage_.y_max);
+}
+
 void Surroundings::put_undercarriage() {
-  const double top = track_height * undercarriage_.x_max;
+  const double top = track_top();
   for (Index col = 0; col < seen_.z.cols(); ++col) {
     for (Index row = 0; row < seen_.z.rows(); ++row) {
       const double x = seen_.x(col), y = seen_.y(row);
@@ -146,7 +151,7 @@ bool Surroundings::stands_at(double x, double y) const {
 
 void Surroundings::put_beside() {
   const double tail = machine_.tail_swing_radius() + margin + seen_.cell_size;
-  const double low = track_height * undercarriage_.x_max - margin;
+  const double low = track_top() - margin;
   for (Index col = 0; col < seen_.z.cols(); ++col) {
     for (Index row = 0; row < seen_.z.rows(); ++row) {
       const Eigen::Vector3d top(seen_.x(col), seen_.y(row), seen_.z(row, col));
@@ -158,7 +163,8 @@ void Surroundings::put_beside() {
 
 std::optional<Clearance> Surroundings::tail_obstacle(const FrontJoints& from,
                                                      const FrontJoints& to) const {
-  const double tail = machine_.tail_swing_radius(), half = undercarriage_.y_max;
+  const double tail = machine_.tail_swing_radius();
+  const double half = std::min(undercarriage_.x_max, undercarriage_.y_max);
   const auto within = [&](const Eigen::Vector3d& top, double swing, double more) {
     const double ahead = top.x() * std::cos(swing) + top.y() * std::sin(swing);
     const double aside = top.y() * std::cos(swing) - top.x() * std::sin(swing);
@@ -170,7 +176,7 @@ std::optional<Clearance> Surroundings::tail_obstacle(const FrontJoints& from,
     if (within(top, from[3], 0.0)) continue;
     for (double i = 1.0; i <= steps; ++i) {
       if (!within(top, from[3] + i / steps * (to[3] - from[3]), near)) continue;
-      return Clearance{track_height * undercarriage_.x_max - top.z(), top};
+      return Clearance{track_top() - top.z(), top};
     }
   }
   return std::nullopt;

@@ -64,6 +64,7 @@ class Surroundings {
   /// is of the machine itself.
   std::optional<Clearance> tail_obstacle(const FrontJoints& from, const FrontJoints& to) const;
 
+  double track_top() const;  ///< over the ground [m]
   bool on_undercarriage(double x, double y) const { return undercarriage_.contains(x, y); }
   /// Whether something stands there, or within the margin.
   bool stands_at(double x, double y) const;

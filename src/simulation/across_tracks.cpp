@@ -22,12 +22,17 @@ bool is_across(double swung) { return std::abs(std::sin(swung)) > std::abs(std::
 Machine looking(Machine machine, double swung) {
   if (!is_across(swung)) return machine;
   const double half = 0.5 * machine.undercarriage_width();
+  machine.tail_radius = machine.tail_swing_radius();  // before its front is another one
   if (machine.body) {
     machine.body->front_edge *= side_edge;
     machine.body->rear_edge = -machine.body->front_edge;
   }
   machine.track_width = 2.0 * machine.track_front;
   machine.track_front = half;
+  if (machine.swing) {
+    machine.swing->lower -= swung;
+    machine.swing->upper -= swung;
+  }
   if (!machine.attitude.is_level())
     machine.attitude = turned_to_side(machine.attitude, std::sin(swung) > 0.0);
   return machine;

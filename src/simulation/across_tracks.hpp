@@ -15,8 +15,9 @@ inline constexpr double side_edge = 0.69;
 /// Whether a front looks across the tracks rather than along them. @param swung  from them [rad]
 bool is_across(double swung);
 
-/// The machine as it looks along or across its tracks, whichever is nearer: undercarriage, attitude
-/// and the edges over which it tips are those ahead of the front then.
+/// The machine as it looks along or across its tracks, whichever is nearer: undercarriage,
+/// attitude, the edges over which it tips and the limits of its swing are those from ahead of the
+/// front then.
 /// @param swung  of the front from the tracks [rad]
 Machine looking(Machine machine, double swung);
 

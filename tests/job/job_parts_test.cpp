@@ -1430,7 +1430,7 @@ TEST(JobGround, ADigThatDidNotStallIsExpectedToItsEnd) {
   const DigLine line = dig_line({}, 0.0, 0.0);
   const auto dug = [&](double strength) {
     job.settings.site.soil = with_strength(loam, strength);
-    return whole_dig(job.settings, job.ground, line, path);
+    return whole_dig(job.settings, job.ground, line, path, 0.0);
   };
   const HeightMapSimulator hard(machine, with_strength(loam, 10.0), job.settings.density_percent);
   const SoilVoids voids = soil_voids(loam, job.settings.density_percent);

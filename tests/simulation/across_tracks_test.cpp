@@ -28,6 +28,11 @@ TEST(AcrossTracks, UndercarriageAndEdgesAreThoseAheadOfTheFront) {
     EXPECT_EQ(turned.body->rear_edge, -turned.body->front_edge);
     EXPECT_LT(turned.body->front_edge, turned.track_front) << "it tips over its rollers";
   }
+  Machine without_radius = machine;
+  without_radius.tail_radius.reset();
+  EXPECT_EQ(looking(without_radius, 0.5 * pi).tail_swing_radius(),
+            without_radius.tail_swing_radius())
+      << "its tail is what it was";
   const Machine along = looking(machine, 0.5);
   EXPECT_EQ(along.track_front, machine.track_front);
   EXPECT_EQ(along.body->rear_edge, machine.body->rear_edge);
@@ -40,6 +45,15 @@ TEST(AcrossTracks, OnASlopeTheFrontLooksUpOrDownAsItDidAside) {
     for (const double more : {0.0, 0.4, -1.0})
       EXPECT_LT((turned.up(more) - machine.up(swung + more)).norm(), 1e-12) << swung << " " << more;
   }
+}
+
+TEST(AcrossTracks, TheSwingEndsWhereItDid) {
+  Machine machine = zx120();
+  machine.swing->lower = -2.0;
+  machine.swing->upper = 2.5;
+  const Machine turned = looking(machine, 0.5 * pi);
+  EXPECT_NEAR(turned.swing->lower, -2.0 - 0.5 * pi, 1e-12);
+  EXPECT_NEAR(turned.swing->upper, 2.5 - 0.5 * pi, 1e-12);
 }
 
 }  // namespace
