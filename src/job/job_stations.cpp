@@ -248,6 +248,13 @@ void add_between(const JobFrame& frame, const Machine& machine, std::size_t firs
   }
 }
 
+/// Whether a bucket lies on the floor alone in some of these lanes.
+bool is_on_floor(const JobFrame& frame, const std::vector<double>& lanes, double half) {
+  return std::any_of(lanes.begin(), lanes.end(), [&](double lane) {
+    return lane - half > frame.floor.right && lane + half < frame.floor.left;
+  });
+}
+
 /// Whether all that is dug from a place lies within half a bucket of sweeps.
 bool is_swept(const JobFrame& frame, const WorkRange& range, double along,
               const std::vector<double>& swept, double bucket_width) {
@@ -350,6 +357,12 @@ std::vector<JobStation> stations_beside(const JobFrame& across, const JobSetting
     stations.push_back(station);
   }
   if (across.tracks < 0.0) std::reverse(stations.begin(), stations.end());  // to the near end first
+  // What falls off the far end is taken with the floor before it, as at the near one.
+  const auto on_floor = [&](const JobStation& each) {
+    return is_on_floor(across, each.lanes, 0.5 * machine.bucket.width_outside);
+  };
+  const auto last = std::find_if(stations.rbegin(), stations.rend(), on_floor);
+  if (last != stations.rend()) std::rotate(last.base() - 1, last.base(), stations.end());
   return stations;
 }
 

@@ -100,6 +100,8 @@ std::vector<JobStation> once_more(const std::vector<JobStation>& stations) {
   std::copy_if(stations.rbegin(), stations.rend(), std::back_inserter(again),
                [](const JobStation& each) { return each.is_again && !each.is_wide; });
   for (JobStation& each : again) each.has_others_beside = false;
+  // Those beside a design in their order, in which its floor comes after its ends.
+  if (!again.empty() && again.front().is_across) std::reverse(again.begin(), again.end());
   return again;
 }
 

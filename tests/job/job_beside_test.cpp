@@ -94,6 +94,18 @@ TEST(JobBeside, ItsPlacesAreOffTheEdgeAndReachAllOfTheTrench) {
   for (std::size_t i = 1; i < swept.size(); ++i) EXPECT_LT(swept[i] - swept[i - 1], half);
 }
 
+TEST(JobBeside, TheFloorAtEachEndComesAfterTheFaceThatFallsOnIt) {
+  const HandMadeJob job = leaning_trench();
+  const auto all = beside(job);
+  ASSERT_TRUE(all);
+  const auto middle = [&](const JobStation& each) { return all->line.place(0.0, each.beside).x(); };
+  const double last_floor = middle(all->places.back());
+  EXPECT_GT(last_floor, 8.0);
+  EXPECT_LT(last_floor, 10.0) << "on the floor";
+  EXPECT_GT(middle(all->places.end()[-2]), last_floor) << "at the face of the end";
+  EXPECT_LT(middle(all->places.front()), 0.5) << "at that of the near end";
+}
+
 TEST(JobBeside, TheyAreLeftAllPassesFromTheLine) {
   const HandMadeJob job = leaning_trench();
   const auto all = beside(job);
