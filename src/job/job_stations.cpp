@@ -11,7 +11,6 @@
 
 #include "base/angles.hpp"
 #include "job/dump_place.hpp"
-#include "simulation/across_tracks.hpp"
 
 namespace excavplan {
 namespace {
@@ -19,7 +18,7 @@ namespace {
 // Numbers of our own choice.
 constexpr double nearest_work = 1.15;  // before the tracks, so that the bucket has room to curl [m]
 constexpr double nearest_rim = 0.9;    // likewise beside a design, so that it curls over the rim
-constexpr double end_of_sweeps = 0.15;     // of the design, that they need not reach [m]
+constexpr double end_of_sweeps = 0.15;  // of the design, to each side, that they need not reach [m]
 constexpr double lane_of_sweeps = 0.33;    // between lanes across it [m]
 constexpr double farthest_work = 0.78;     // of the reach of the front from its pin
 constexpr double farthest_of_wide = 0.86;  // likewise where two ends meet
@@ -211,7 +210,7 @@ bool can_begin(const JobFrame& frame, const JobStation& station, const Machine& 
 
 double nearest_of(const JobFrame& frame, const Machine& machine) {
   if (!frame.is_beside()) return machine.track_front + nearest_work;
-  return looking(machine, -frame.tracks).track_front + nearest_rim;
+  return 0.5 * machine.undercarriage_width() + nearest_rim;
 }
 double at_reach(const Machine& machine, double share) {
   return machine.boom_pin.x() + share * machine.full_length();
@@ -366,6 +365,10 @@ std::vector<JobStation> stations_beside(const JobFrame& across, const JobSetting
   return stations;
 }
 
+bool reaches_across(const JobFrame& across, const JobStation& place, const Machine& machine) {
+  return place.along + work_range(across, machine, place.along).far > across.far - end_of_sweeps;
+}
+
 std::vector<double> swept_from(const std::vector<JobStation>& places, const JobFrame& across,
                                const JobFrame& frame) {
   std::vector<double> swept;
@@ -450,9 +453,12 @@ JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine&
 }
 
 double volume_lane_step(const JobFrame& frame) {
-  return frame.is_beside() || frame.has_faces_across()
-             ? batter_step * static_cast<double>(passes_of_lane)
-             : 0.0;
+  return frame.has_faces_across() ? batter_step * static_cast<double>(passes_of_lane) : 0.0;
+}
+
+BasePose ahead_of(BasePose base, const JobFrame& frame) {
+  base.heading = frame.heading;
+  return base;
 }
 
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

@@ -63,6 +63,9 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
 /// down one face, along the floor and up the other one. @param across  is_beside()
 std::vector<JobStation> stations_beside(const JobFrame& across, const JobSettings& settings);
 
+/// Whether the front reaches all across from one of them, but for what sweeps need not reach.
+bool reaches_across(const JobFrame& across, const JobStation& place, const Machine& machine);
+
 /// Where along a line of work their passes run, in rising order [m].
 std::vector<double> swept_from(const std::vector<JobStation>& places, const JobFrame& across,
                                const JobFrame& frame);
@@ -137,10 +140,7 @@ JobStation on_bench(JobStation station, const JobFrame& frame, const AcrossLine&
 double volume_lane_step(const JobFrame& frame);
 
 /// The same place, with the front along a line of work.
-inline BasePose ahead_of(BasePose base, const JobFrame& frame) {
-  base.heading = frame.heading;
-  return base;
-}
+BasePose ahead_of(BasePose base, const JobFrame& frame);
 
 /// A machine at a station, on the mean height of the ground under its tracks.
 BasePose base_at(const JobFrame& frame, const JobStation& station, const Terrain& ground,

@@ -129,7 +129,6 @@ struct SiteJob::State {
     design = map.target.z;
     frame = work_frame(settings, map, first);
     side = places_beside(settings, map, first, frame);
-    if (side) digger_across = looking(settings.site.machine, -side->line.tracks);
     const Gradient slope = gradient_of(map.target);
     const Eigen::ArrayXXd rise = (slope.x.square() + slope.y.square()).sqrt();
     steps = volume_lane_step(frame) * rise.isNaN().select(0.0, rise);
@@ -184,10 +183,6 @@ struct SiteJob::State {
 
   JobFrame frame_at(const JobStation& station) const {
     return station.is_across ? side->line : line_of(frame, station);
-  }
-  /// As it looks along the line of a station.
-  const Machine& machine_at(const JobStation& station) const {
-    return station.is_across ? digger_across : settings.site.machine;
   }
 
   /// The present station. Where the soil has proved hard the far end is left to a place beyond:
@@ -322,7 +317,6 @@ struct SiteJob::State {
   Eigen::ArrayXXd design;  ///< JobMap::target as told
   JobFrame frame;
   std::optional<PlacesBeside> side;  ///< places_beside()
-  Machine digger_across;             ///< JobSettings' machine as it looks from them
   Eigen::ArrayXXd steps;             ///< heights of those that lanes for volume leave of faces [m]
   std::vector<JobStation> stations;
   bool can_leave_end = false;  ///< to a place beyond
@@ -502,7 +496,7 @@ std::optional<JobStep> SiteJob::State::best_step(Work work) {
 
 /// With all that the step does before and after the dig.
 void SiteJob::State::foretell(JobStep& step, const DumpPlace& dump, StepDig& dig) const {
-  const Machine& machine = machine_at(stations[record.station]);
+  const Machine machine = looking(settings.site.machine, step.swung);
   const double carried = step.carried ? loose_mass(settings.site.soil, step.carried->volume) : 0.0;
   const auto after = cycle_of(machine, step.path, dig.dig,
                               cycle_after(dump, step.keeps_load, step.dumps_first ? 0.0 : carried));

@@ -23,9 +23,8 @@ constexpr double off_cut = 0.3;                    // of the tracks from ground 
 constexpr double deepest_rut = 0.15;               // more is dug
 constexpr std::array off_drops = {0.5, 0.8, 1.1};  // from ground that is deeper than that
 constexpr double highest_soil = 0.2;               // under the tracks
-constexpr double across_margin = 0.15;     // of a design, that need not be reached from beside it
-constexpr double spare_reach = 0.5;        // to the dump, since what is laid there grows
-constexpr double spare_turn = 0.3;         // to it [rad], likewise
+constexpr double spare_reach = 0.5;                // to the dump, since what is laid there grows
+constexpr double spare_turn = 0.3;                 // to it [rad], likewise
 constexpr double off_place = 0.1;          // where the machine comes to stand along the line
 constexpr double shift_step = 0.4;         // between the places that are looked at
 constexpr double farthest_for_room = 1.3;  // to a place from which dump areas are not full [m]
@@ -69,20 +68,12 @@ bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSet
   return clear;
 }
 
-}  // namespace
-
-namespace {
-
 /// Its swing goes there, and it stands on the sides of its tracks.
 bool can_look_across(const Machine& machine, double swung) {
   const bool turns = machine.swing && machine.swing->lower < swung && swung < machine.swing->upper;
   const bool stands =
       !machine.body || std::abs(machine.body->centre.x()) < side_edge * machine.body->front_edge;
   return turns && stands;
-}
-
-bool reaches_across(const JobFrame& line, const JobStation& place, const Machine& machine) {
-  return place.along + work_range(line, machine, place.along).far > line.far - across_margin;
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ struct PlacesBeside {
   std::vector<JobStation> places;  ///< where the machine can stand, turn and dump
 };
 
-/// Those on the side that has more of them; nothing where no face runs along the line of work, some
-/// do across it, or there is no such place.
+/// Those on the side that has more of them; nothing where no face runs along the line of work, as
+/// many do across it, the front does not reach all across, or there is no such place.
 /// @param first  ground before the job
 /// @param frame  of the line of work
 std::optional<PlacesBeside> places_beside(const JobSettings& settings, const JobMap& map,
