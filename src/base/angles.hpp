@@ -7,6 +7,7 @@
 namespace excavplan {
 
 inline constexpr double pi = 3.14159265358979323846;
+inline constexpr double degree = pi / 180.0;  // [rad]
 
 /// The same direction within half a turn of 0 [rad].
 inline double wrapped(double angle) { return std::remainder(angle, 2.0 * pi); }

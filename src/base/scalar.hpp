@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 
 /// @file
 /// Numbers in the bytes of a file, of a type that the file names. Private to the project.
@@ -73,6 +74,12 @@ T load(const char* bytes, bool swapped) {
   T value;
   std::memcpy(&value, raw.data(), raw.size());
   return value;
+}
+
+/// Adds a number to the bytes of a file, the lowest byte first.
+template <typename Number>
+void put(Number value, std::string& bytes) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 }  // namespace excavplan

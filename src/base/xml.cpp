@@ -48,9 +48,9 @@ string replacement_of(string_view entity) {
   return utf8_of(code);
 }
 
-class Reader {
+class XmlReader {
  public:
-  Reader(const string& name, string_view text) : name_(name), text_(text) {}
+  XmlReader(const string& name, string_view text) : name_(name), text_(text) {}
 
   XmlElement document() {
     if (const auto bad = first_not_utf8(text_)) {
@@ -249,7 +249,7 @@ const XmlElement* XmlElement::child(const string& of_name) const {
 }
 
 XmlElement parse_xml(const string& name, const string& text) {
-  return Reader(name, text).document();
+  return XmlReader(name, text).document();
 }
 
 }  // namespace excavplan

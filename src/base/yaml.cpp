@@ -33,7 +33,7 @@ struct Line {
                                        in_quotes(found) + ", expected " + expected);
 }
 
-string_view trimmed(string_view text) {
+string_view yaml_trimmed(string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == text.npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
@@ -73,7 +73,7 @@ string_view without_comment(string_view text) {
   const std::size_t at = find_outside_quotes(text, [&](std::size_t i) {
     return text[i] == '#' && (i == 0 || text[i - 1] == ' ' || text[i - 1] == '\t');
   });
-  return trimmed(text.substr(0, at));
+  return yaml_trimmed(text.substr(0, at));
 }
 
 /// Where the colon behind the key of a map stands.
@@ -118,9 +118,10 @@ std::optional<double> number_of(string_view word) {
   return value;
 }
 
-class Reader {
+class YamlReader {
  public:
-  Reader(const std::string& name, string_view text) : name_(name), lines_(lines_of(name, text)) {}
+  YamlReader(const std::string& name, string_view text)
+      : name_(name), lines_(lines_of(name, text)) {}
 
   json document() {
     if (lines_.empty()) refuse(name_, 1, "", "a YAML document");
@@ -155,9 +156,9 @@ class Reader {
       const string_view text = lines_[at_].text;
       const std::size_t colon = is_item(text) ? text.npos : colon_of(text);
       if (colon == text.npos) fail(text, "a key and a colon");
-      const std::string key = plain(trimmed(text.substr(0, colon)));
+      const std::string key = plain(yaml_trimmed(text.substr(0, colon)));
       if (object.contains(key)) fail(text, "every key once");
-      const string_view rest = without_tag(trimmed(text.substr(colon + 1)));
+      const string_view rest = without_tag(yaml_trimmed(text.substr(colon + 1)));
       object[key] = rest.empty() ? below(indent, true, level) : value_of(rest, level);
     }
     return object;
@@ -207,7 +208,7 @@ class Reader {
     }
     string_view rest = whole;
     json value = flow(rest, level + 1);
-    if (!trimmed(rest).empty()) fail(rest, "nothing behind the bracket");
+    if (!yaml_trimmed(rest).empty()) fail(rest, "nothing behind the bracket");
     ++at_;
     return value;
   }
@@ -226,7 +227,7 @@ class Reader {
   /// Takes a value off the front of what stands in brackets.
   json flow(string_view& text, int level) {
     if (level > most_levels) fail(text, "at most 64 levels");
-    text = trimmed(text);
+    text = yaml_trimmed(text);
     if (text.empty()) fail("", "a value");
     const bool is_map = text[0] == '{';
     if (!is_map && text[0] != '[') return scalar(taken(text, ",]}"));
@@ -234,7 +235,7 @@ class Reader {
     json all = is_map ? json::object() : json::array();
     text.remove_prefix(1);
     while (true) {
-      text = trimmed(text);
+      text = yaml_trimmed(text);
       if (!text.empty() && text[0] == closing) break;
       if (is_map) {
         const std::string key = plain(taken(text, ":,}]"));
@@ -245,7 +246,7 @@ class Reader {
       } else {
         all.push_back(flow(text, level + 1));
       }
-      text = trimmed(text);
+      text = yaml_trimmed(text);
       if (!text.empty() && text[0] == ',') {
         text.remove_prefix(1);
       } else if (text.empty() || text[0] != closing) {
@@ -261,7 +262,7 @@ class Reader {
     const std::size_t end = std::min(text.size(), find_outside_quotes(text, [&](std::size_t i) {
                                        return stops.find(text[i]) != string_view::npos;
                                      }));
-    const string_view word = trimmed(text.substr(0, end));
+    const string_view word = yaml_trimmed(text.substr(0, end));
     text.remove_prefix(end);
     return word;
   }
@@ -269,7 +270,7 @@ class Reader {
   static string_view without_tag(string_view text) {
     if (text.empty() || text[0] != '!') return text;
     const std::size_t end = text.find_first_of(" \t");
-    return end == text.npos ? string_view() : trimmed(text.substr(end));
+    return end == text.npos ? string_view() : yaml_trimmed(text.substr(end));
   }
 
   json scalar(string_view text) const {
@@ -304,7 +305,7 @@ class Reader {
 }  // namespace
 
 json parse_yaml(const std::string& name, const std::string& text) {
-  return Reader(name, text).document();
+  return YamlReader(name, text).document();
 }
 
 }  // namespace excavplan

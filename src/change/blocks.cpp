@@ -21,8 +21,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double degree = pi / 180.0;
-
 // Ours, found on simulated heaps of loose soil and of blocks (docs/methods.md#blocks).
 constexpr double coarse_window = 0.30;           // [m]
 constexpr Eigen::Index least_coarse_radius = 2;  // 5 x 5 cells

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
@@ -17,7 +18,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
 constexpr std::size_t fewest_stable_cells = 25;  // ours: fewest for noise and datum
 constexpr int most_rounds = 8;

@@ -95,7 +95,7 @@ void state(double volume, double factor, double scans, VolumeChange& change) {
 
 // ---- In ground that is known -------------------------------------------------------------------
 
-constexpr double sure = 2.0;          // ours: deviations that make a change one
+constexpr double sure_change = 2.0;   // ours: deviations that make a change one
 constexpr double swelling_sd = 0.01;  // ours: of loose soil that is dug again, of its volume
 constexpr double whole = 1.0 - 1e-9;  // of a cell
 
@@ -108,7 +108,7 @@ double value_at(const Eigen::ArrayXXd& layer, Cell at, double without) {
 /// What a fall took of the loose soil of a cell. A fall within its error is no less loose soil for
 /// its sign.
 double taken_of(double loose, double fall, double sd) {
-  if (fall < sure * sd) return std::min(fall, loose);
+  if (fall < sure_change * sd) return std::min(fall, loose);
   return std::min(std::max(fall, 0.0), loose);
 }
 

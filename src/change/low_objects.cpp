@@ -25,7 +25,7 @@ struct EdgeLimits {
   double most_rising;    ///< share
   double one_sided;      ///< length of the mean direction of what falls
 };
-constexpr EdgeLimits sure = {0.45, 0.15, 0.65};
+constexpr EdgeLimits sure_edge = {0.45, 0.15, 0.65};
 constexpr EdgeLimits suspected = {0.3, 0.2, 0.5};
 constexpr double least_change = 0.03;  // of the ground around [m]
 constexpr double own_change = 0.015;   // of the top, at least [m]
@@ -68,7 +68,7 @@ class TopFinder {
       const double area = static_cast<double>(top.cells.size()) * cell_size_ * cell_size_;
       if (area < least_area || area > largest_area) return;
       Edge edge = edge_of(top.cells, mark++);
-      top.is_sure = edge.is_within(sure);
+      top.is_sure = edge.is_within(sure_edge);
       if (!top.is_sure && !edge.is_within(suspected)) return;
       if (!on_any_ground_ && median(edge.changes) < least_change) return;
       if (is_unchanged(top.cells)) {

@@ -14,15 +14,15 @@
 namespace excavplan {
 namespace {
 
-constexpr double steepest = 1.7320508075688772;  // ours: 60 degrees
-constexpr double least_excess = 0.5;             // ours [m]
-constexpr double least_area = 0.02;              // ours: smaller ones are single bad cells [m^2]
-constexpr double edge_excess = 0.05;             // ours: as far as an object reaches [m]
-constexpr double of_a_heap = 0.2;                // ours: ground around over top, as risen [-]
+constexpr double steepest_soil = 1.7320508075688772;  // ours: 60 degrees
+constexpr double least_over_slope = 0.5;              // ours [m]
+constexpr double least_object = 0.02;  // ours: smaller ones are single bad cells [m^2]
+constexpr double edge_excess = 0.05;   // ours: as far as an object reaches [m]
+constexpr double of_a_heap = 0.2;      // ours: ground around over top, as risen [-]
 
 /// Height above the steepest surface that could lie there, less what one cell blurs.
 Eigen::ArrayXXd excess_of(const Eigen::ArrayXXd& z, double cell_size) {
-  return z - slope_limited(z, steepest * cell_size) - steepest * cell_size;
+  return z - slope_limited(z, steepest_soil * cell_size) - steepest_soil * cell_size;
 }
 
 /// Cells within `margin` of the given ones, or next to them.
@@ -93,12 +93,13 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
   const Eigen::ArrayXXd rise =
       (with - without).isNaN().select(with - without, (with - without).max(0.0));
   const Eigen::ArrayXXd excess = excess_of(rise, cell_size);
-  if (!(excess > least_excess).any()) return objects;
+  if (!(excess > least_over_slope).any()) return objects;
   const Eigen::ArrayXXd own_excess = excess_of(with, cell_size);
   Eigen::ArrayXXi label = Eigen::ArrayXXi::Constant(rise.rows(), rise.cols(), free);
   for_each_cell(rise, [&](Cell seed) {
     if (label(seed.row, seed.col) != free) return;
-    if (!(std::min(excess(seed.row, seed.col), own_excess(seed.row, seed.col)) > least_excess)) {
+    if (!(std::min(excess(seed.row, seed.col), own_excess(seed.row, seed.col)) >
+          least_over_slope)) {
       return;
     }
     const auto joins = [&](Cell cell_at) { return excess(cell_at.row, cell_at.col) > edge_excess; };
@@ -106,7 +107,7 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
     object.cells = with_enclosed(mark_connected(label, seed, 0, joins));
     for (const Cell at : object.cells) label(at.row, at.col) = 0;
     object.is_blunder =
-        static_cast<double>(object.cells.size()) * cell_size * cell_size < least_area;
+        static_cast<double>(object.cells.size()) * cell_size * cell_size < least_object;
     if (!object.is_blunder) {
       object.cells = widened(object.cells, rise, margin);
       if (is_part_of_heap(object.cells, rise)) return;
@@ -191,7 +192,7 @@ void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double ce
   const Eigen::ArrayXXd lower = before.min(after);
   const double range =
       lower.isNaN().select(-1e30, lower).maxCoeff() - lower.isNaN().select(1e30, lower).minCoeff();
-  if (range < least_excess) return;
+  if (range < least_over_slope) return;
   const auto without = [&](const Eigen::ArrayXXd& z) -> Eigen::ArrayXXd {
     if (dug.size() == 0) return z;
     return (dug != 0).select(std::numeric_limits<double>::quiet_NaN(), z);
@@ -201,7 +202,7 @@ void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double ce
           .min(excess_of(without(after), cell_size));  // NaN: not in both
   std::vector<Cell> cells;
   for_each_cell(of_both, [&](Cell at) {
-    if (of_both(at.row, at.col) > least_excess) cells.push_back(at);
+    if (of_both(at.row, at.col) > least_over_slope) cells.push_back(at);
   });
   for (const Cell at : widened(cells, before, beside)) {
     before(at.row, at.col) = after(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();

@@ -24,7 +24,7 @@ constexpr std::size_t most_readings = 6;
 constexpr std::size_t most_single = 4;
 constexpr double farthest = 0.025;       // weight that the covariance leaves out
 constexpr double warned = 0.05;          // weight that a 95 % interval may leave out
-constexpr double telling = 0.03;         // of k: readings that differ by more matter
+constexpr double telling_share = 0.03;   // of k: readings that differ by more matter
 constexpr double as_likely = 0.35;       // weight of readings that end trust
 constexpr double deepest_press = 0.03;   // of the ground under a heap [m]
 constexpr double press_share = 0.5;      // of the height seen there, at most
@@ -266,7 +266,7 @@ class OpenChanges {
     const Reading* likeliest = nullptr;
     for (const Reading& reading : result_.readings) {
       const double off = std::abs(reading.bulking.value - given.bulking.value);
-      if (is_unseen(reading) || off < telling * given.bulking.value) continue;
+      if (is_unseen(reading) || off < telling_share * given.bulking.value) continue;
       other += reading.weight;
       if (likeliest == nullptr) likeliest = &reading;
     }
@@ -287,7 +287,7 @@ class OpenChanges {
       return change.kind == ChangeKind::stirred;
     });
     if (!found || !k) return;
-    const bool is_large = bulking_errors(result_).attribution > telling * k->value;
+    const bool is_large = bulking_errors(result_).attribution > telling_share * k->value;
     result_.warnings.emplace_back(
         WarningCode::stirred_ground,
         "ground rose and fell in many small places: it was stirred, by tracks or a blade, and "

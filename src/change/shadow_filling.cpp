@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.hpp"
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
@@ -16,8 +17,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double degree = 0.017453292519943295;
 
 /// An angle of a face and its standard deviation [rad].
 struct Angle {

@@ -24,7 +24,8 @@ namespace {
 
 constexpr Eigen::Index fewest_known_cells = 100;
 constexpr double gentle = 0.5;  // ours: soil beyond the edge of a scan lies steeper [-]
-constexpr double steep = 1.0;  // ours: on gentler faces the cells are averages of enough points [-]
+constexpr double steep_face =
+    1.0;  // ours: on gentler faces the cells are averages of enough points [-]
 /// Error of the position of a steep face in a lattice of points, as a share of its spacing and the
 /// same along the whole face; ours, from pits with upright walls under simulated cameras.
 constexpr double face_place = 0.15;
@@ -98,7 +99,7 @@ void sum_faces(Area& area, const Surface& scan) {
   const Gradient gradient = gradient_of(scan.height);
   const double regularity = regularity_of(scan, area.ground.zone);
   const double cell_size = area.grid.cell_size;
-  const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell_size);
+  const double least = std::max(steep_face, 2.0 * area.ground.noise_sd / cell_size);
   for_each_cell(area.ground.zone, [&](Cell at) {
     const int index = area.ground.zone(at.row, at.col);
     if (index < 0) return;

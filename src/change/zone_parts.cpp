@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "change/zone_shape.hpp"
 #include "ground/grid_cells.hpp"
@@ -16,8 +16,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Ours, by what digs, tracks and heaps look like.
 constexpr double core_share = 0.3;       // of a zone's own height, above which it is no edge [-]
@@ -186,7 +184,7 @@ class Parter {
     const Mask stirred = stirred_ground(zones);
     if (!stirred.any()) return;
     const Eigen::ArrayXXd field = stirred.select(
-        low_change(), Eigen::ArrayXXd::Constant(stirred.rows(), stirred.cols(), unknown));
+        low_change(), Eigen::ArrayXXd::Constant(stirred.rows(), stirred.cols(), nan));
     const NoiseModel noise = find_noise(field, cell_size_);
     const double rms = std::sqrt(noise.white + noise.correlated);
     const int churn = static_cast<int>(zones.size());
@@ -209,7 +207,7 @@ class Parter {
   }
 
   Eigen::ArrayXXd low_change() const {
-    return (ground_.difference.abs() < highest_churn).select(ground_.difference, unknown);
+    return (ground_.difference.abs() < highest_churn).select(ground_.difference, nan);
   }
 
   /// Zones that are too high to be stirred ground, with their edges.
@@ -243,7 +241,7 @@ class Parter {
   Mask churned_where(const Mask& left_out) const {
     const auto half = static_cast<Eigen::Index>(std::ceil(churn_window / cell_size_));
     const Eigen::ArrayXXd field = left_out.select(
-        Eigen::ArrayXXd::Constant(left_out.rows(), left_out.cols(), unknown), low_change());
+        Eigen::ArrayXXd::Constant(left_out.rows(), left_out.cols(), nan), low_change());
     const Windows windows = windows_of(field, half);
     const Mask is_known = windows.share > least_known_window;
     std::vector<double> squares;

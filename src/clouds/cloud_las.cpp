@@ -45,7 +45,7 @@ constexpr std::size_t first_new_format = 6;  ///< whose class has a byte of its 
 constexpr std::size_t record_head = 54;      ///< of a variable length record [byte]
 constexpr std::size_t extended_head = 60;    ///< of an extended one [byte]
 
-struct Header {
+struct LasHeader {
   std::size_t format = 0;
   std::size_t size = 0;         ///< of the header [byte]
   std::uint64_t points_at = 0;  ///< [byte]
@@ -95,7 +95,7 @@ std::size_t read_version(const FileStream& file, std::string_view head) {
   return minor;
 }
 
-void read_layout(const FileStream& file, std::string_view head, Header& header) {
+void read_layout(const FileStream& file, std::string_view head, LasHeader& header) {
   header.size = whole_at(head, header_size, 2);
   header.points_at = whole_at(head, offset_to_points, 4);
   if (header.points_at < header.size || header.points_at > file.size()) {
@@ -128,7 +128,7 @@ std::uint64_t read_count(const FileStream& file, std::string_view head, std::siz
   return count;
 }
 
-void read_scale(const FileStream& file, std::string_view head, Header& header) {
+void read_scale(const FileStream& file, std::string_view head, LasHeader& header) {
   header.scale = numbers_at(head, scale_factors);
   header.offset = numbers_at(head, coordinate_offsets);
   if (!header.scale.allFinite() || !(header.scale > 0.0).all()) {
@@ -142,7 +142,7 @@ void read_scale(const FileStream& file, std::string_view head, Header& header) {
 
 /// Behind the points there may be nothing but what the header tells of.
 void check_end(const FileStream& file, std::string_view head, std::size_t minor,
-               const Header& header) {
+               const LasHeader& header) {
   const std::uint64_t room = file.size() - header.points_at;
   if (header.count > room / header.row) {
     refuse(file, header.points_at, std::to_string(room) + " bytes of points",
@@ -174,7 +174,7 @@ void read_system(std::string_view head, std::string_view content, LasSystem& sys
 }
 
 /// Goes to the first point, past records in which a LAZ file says what it is.
-LasSystem read_records(FileStream& file, std::uint64_t records, const Header& header) {
+LasSystem read_records(FileStream& file, std::uint64_t records, const LasHeader& header) {
   LasSystem system;
   file.skip(header.size);
   for (std::uint64_t i = 0; i < records; ++i) {
@@ -235,7 +235,7 @@ class Saturation {
     }
   }
   /// @throws Error (bad_file) where they are more than stray points
-  void check(const FileStream& file, const Header& header) const {
+  void check(const FileStream& file, const LasHeader& header) const {
     constexpr std::uint64_t fewest = 10;  // ours
     constexpr double most = 0.01;         // ours, of the points
     const auto worst = std::max_element(points_.begin(), points_.end());
@@ -259,7 +259,7 @@ class Saturation {
   std::array<std::uint64_t, 3> points_{};  ///< by axis
 };
 
-std::uint64_t stream_points(FileStream& file, const Header& header, PointSink& sink) {
+std::uint64_t stream_points(FileStream& file, const LasHeader& header, PointSink& sink) {
   constexpr std::size_t at_a_time = std::size_t{1} << 18;  // [byte]
   const std::size_t most = std::max<std::size_t>(1, at_a_time / header.row);
   PointBatch batch(sink);
@@ -288,7 +288,7 @@ std::uint64_t stream_points(FileStream& file, const Header& header, PointSink& s
 CloudShape stream_las(FileStream& file, PointSink& sink) {
   const std::string_view head = file.peek(header_sizes.back());
   const std::size_t minor = read_version(file, head);
-  Header header;
+  LasHeader header;
   read_layout(file, head, header);
   header.count = read_count(file, head, minor);
   read_scale(file, head, header);

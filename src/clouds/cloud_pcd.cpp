@@ -29,7 +29,7 @@ struct Field {
   std::size_t bytes() const { return size * count; }
 };
 
-struct Header {
+struct PcdHeader {
   std::vector<Field> fields;
   std::array<std::size_t, 3> xyz{};  ///< indices of the fields x, y, z
   std::uint64_t width = 0;
@@ -49,7 +49,7 @@ bool may_be_left_out(std::size_t key) { return key == version || key == count ||
 
 using Words = std::vector<std::string_view>;
 
-void read_field_names(const Words& words, const LineReader& lines, Header& header) {
+void read_field_names(const Words& words, const LineReader& lines, PcdHeader& header) {
   if (words.size() > most_fields) {
     lines.fail(std::to_string(words.size()) + " fields", "at most " + std::to_string(most_fields));
   }
@@ -66,7 +66,7 @@ void read_field_names(const Words& words, const LineReader& lines, Header& heade
   }
 }
 
-void read_sizes(const Words& words, const LineReader& lines, Header& header) {
+void read_sizes(const Words& words, const LineReader& lines, PcdHeader& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::uint64_t bytes = count_of(words[i], lines);
     if (bytes != 1 && bytes != 2 && bytes != 4 && bytes != 8) {
@@ -76,7 +76,7 @@ void read_sizes(const Words& words, const LineReader& lines, Header& header) {
   }
 }
 
-void read_types(const Words& words, const LineReader& lines, Header& header) {
+void read_types(const Words& words, const LineReader& lines, PcdHeader& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     Field& field = header.fields[i];
     const std::size_t type = words[i].size() == 1 ? std::string("IUFiuf").find(words[i]) : 6;
@@ -88,7 +88,7 @@ void read_types(const Words& words, const LineReader& lines, Header& header) {
   }
 }
 
-void read_counts(const Words& words, const LineReader& lines, Header& header) {
+void read_counts(const Words& words, const LineReader& lines, PcdHeader& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::uint64_t elements = count_of(words[i], lines);
     if (elements < 1 || elements > longest_row) {
@@ -130,7 +130,7 @@ std::optional<Eigen::Vector3d> read_viewpoint(const Words& words, const LineRead
 }
 
 void require_words(std::size_t key, const Words& words, const LineReader& lines,
-                   const Header& header) {
+                   const PcdHeader& header) {
   const std::string name(key_names[key]);
   if (key == fields) return;
   const bool per_field = key == size || key == type || key == count;
@@ -140,7 +140,7 @@ void require_words(std::size_t key, const Words& words, const LineReader& lines,
   }
 }
 
-void read_entry(std::size_t key, const Words& words, const LineReader& lines, Header& header) {
+void read_entry(std::size_t key, const Words& words, const LineReader& lines, PcdHeader& header) {
   require_words(key, words, lines, header);
   switch (key) {
     case version:
@@ -183,7 +183,7 @@ std::size_t key_of(std::string_view word, std::size_t due, const LineReader& lin
   return key;
 }
 
-void measure_rows(const LineReader& lines, Header& header) {
+void measure_rows(const LineReader& lines, PcdHeader& header) {
   for (const Field& field : header.fields) {
     header.row += field.bytes();
     header.tokens += field.count;
@@ -201,8 +201,8 @@ void measure_rows(const LineReader& lines, Header& header) {
   }
 }
 
-Header read_header(LineReader& lines) {
-  Header header;
+PcdHeader read_header(LineReader& lines) {
+  PcdHeader header;
   std::size_t due = version;
   while (due <= data) {
     if (!lines.next_filled()) {
@@ -238,7 +238,7 @@ ScalarType scalar_type(const Field& field) {
 }
 
 /// Of rows of points.
-Columns columns_of(const Header& header) {
+Columns columns_of(const PcdHeader& header) {
   Columns columns;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t offset = 0;
@@ -252,7 +252,7 @@ Columns columns_of(const Header& header) {
 }
 
 /// Which numbers of an ASCII row are x, y and z.
-std::array<std::size_t, 3> tokens_of_xyz(const Header& header) {
+std::array<std::size_t, 3> tokens_of_xyz(const PcdHeader& header) {
   std::array<std::size_t, 3> tokens{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < header.xyz[axis]; ++i) tokens[axis] += header.fields[i].count;
@@ -260,7 +260,7 @@ std::array<std::size_t, 3> tokens_of_xyz(const Header& header) {
   return tokens;
 }
 
-void stream_ascii(FileStream& file, LineReader& lines, const Header& header, PointSink& sink) {
+void stream_ascii(FileStream& file, LineReader& lines, const PcdHeader& header, PointSink& sink) {
   const std::size_t shortest_row = 2 * header.tokens;
   sink.require_memory(std::min(header.points, file.left() / shortest_row + 1), 0);
   const std::array<std::size_t, 3> xyz = tokens_of_xyz(header);
@@ -288,7 +288,7 @@ void stream_ascii(FileStream& file, LineReader& lines, const Header& header, Poi
   batch.hand_on();
 }
 
-void stream_binary(FileStream& file, const Header& header, PointSink& sink) {
+void stream_binary(FileStream& file, const PcdHeader& header, PointSink& sink) {
   if (header.points > file.left() / header.row) {
     file.fail_here(
         std::to_string(file.left()) + " bytes of data",
@@ -301,7 +301,7 @@ void stream_binary(FileStream& file, const Header& header, PointSink& sink) {
 
 /// Compressed PCD stores one field of all points after the other: x, y and z are unpacked side by
 /// side, each by a reader of its own, so that none has to be held.
-void stream_fields(const FileStream& file, const LzfBlock& block, const Header& header,
+void stream_fields(const FileStream& file, const LzfBlock& block, const PcdHeader& header,
                    PointSink& sink) {
   std::deque<LzfStream> fields;
   Columns columns;
@@ -328,7 +328,7 @@ void stream_fields(const FileStream& file, const LzfBlock& block, const Header& 
   fields[static_cast<std::size_t>(last)].finish();
 }
 
-void stream_compressed(FileStream& file, const Header& header, PointSink& sink) {
+void stream_compressed(FileStream& file, const PcdHeader& header, PointSink& sink) {
   constexpr std::uint64_t highest_ratio = 256;  // LZF reaches 88
   const std::string place = "byte " + std::to_string(file.offset());
   if (file.left() < 8) {
@@ -377,7 +377,7 @@ bool holds_pcd(FileStream& file) {
 
 CloudShape stream_pcd(FileStream& file, PointSink& sink) {
   LineReader lines(file);
-  const Header header = read_header(lines);
+  const PcdHeader header = read_header(lines);
   switch (header.encoding) {
     case Encoding::ascii:
       stream_ascii(file, lines, header, sink);

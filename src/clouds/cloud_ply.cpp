@@ -41,7 +41,7 @@ struct Element {
   }
 };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
 };
@@ -115,7 +115,7 @@ Property read_property(const Words& words, const LineReader& lines) {
 }
 
 /// The header must describe one element vertex with x, y and z.
-void require_vertices(const Header& header, const LineReader& lines) {
+void require_vertices(const PlyHeader& header, const LineReader& lines) {
   std::size_t vertices = 0;
   for (const Element& element : header.elements) {
     if (element.properties.empty()) {
@@ -148,8 +148,8 @@ Words next_header_line(LineReader& lines) {
   }
 }
 
-Header read_header(LineReader& lines) {
-  Header header;
+PlyHeader read_header(LineReader& lines) {
+  PlyHeader header;
   lines.next();  // "ply", by which the format was detected
   header.encoding = read_encoding(next_header_line(lines), lines);
   std::size_t properties = 0;
@@ -204,7 +204,7 @@ Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines,
   return point;
 }
 
-void stream_text(FileStream& file, LineReader& lines, const Header& header, const MeshSink& to) {
+void stream_text(FileStream& file, LineReader& lines, const PlyHeader& header, const MeshSink& to) {
   PointSink& sink = to.points;
   PointBatch batch(sink);
   for (const Element& element : header.elements) {
@@ -325,7 +325,7 @@ bool holds_ply(FileStream& file) {
 
 CloudShape stream(FileStream& file, const MeshSink& to) {
   LineReader lines(file);
-  const Header header = read_header(lines);
+  const PlyHeader header = read_header(lines);
   if (header.encoding == Encoding::ascii) {
     stream_text(file, lines, header, to);
   } else {

@@ -3,11 +3,11 @@
 #include "clouds/cloud_raster.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_cell.hpp"
 #include "clouds/cloud_summary.hpp"
@@ -19,7 +19,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double most_cells = 1e8;
 
 /// Lattice lines of the grid before `low` and behind `high`, with room for rounding.
@@ -62,7 +61,7 @@ HeightMap empty_map(const Rectangle& extent, const RasterOptions& options) {
   map.cell_size = options.cell_size;
   map.origin = node + options.cell_size * Eigen::Vector2d(columns.first, rows.first);
   map.z = Eigen::ArrayXXd::Constant(static_cast<Index>(rows.count),
-                                    static_cast<Index>(columns.count), unknown);
+                                    static_cast<Index>(columns.count), nan);
   return map;
 }
 

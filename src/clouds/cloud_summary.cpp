@@ -11,10 +11,11 @@
 
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
+
 namespace excavplan {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double left_out = 0.001;  // of the points, on either side of an extent
 
 /// The lowest of the values that stream by, so many of them.
@@ -106,8 +107,8 @@ class Totals {
   CloudSummary summary() const {
     CloudSummary summary = summary_;
     if (summary.finite_points == 0) {
-      summary.centroid = summary.min = summary.max = Eigen::Vector3d::Constant(unknown);
-      summary.density = unknown;
+      summary.centroid = summary.min = summary.max = Eigen::Vector3d::Constant(nan);
+      summary.density = nan;
     } else {
       summary.centroid = first_ + sum_ / static_cast<double>(summary.finite_points);
     }
@@ -177,9 +178,9 @@ double points_per_area(const PointSource& source, std::size_t finite_points,
   constexpr double most_cells = 1e8;  // ours
   const double width = extent.x_max - extent.x_min;
   const double length = extent.y_max - extent.y_min;
-  if (std::min(width, length) < narrowest) return unknown;
+  if (std::min(width, length) < narrowest) return nan;
   const auto points = static_cast<double>(finite_points);
-  if (!std::isfinite(width * length)) return unknown;
+  if (!std::isfinite(width * length)) return nan;
   // Bounds the grid's memory.
   const double smallest_cell =
       std::max(std::max(width, length) / points, std::sqrt(width * length / most_cells));

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier; ours
 constexpr double crumb = 0.04;      // ours: soil lies in crumbs so high, which belong to it [m]
 
@@ -42,8 +42,7 @@ GroundLevels find_levels(PointsByCell& points) {
   constexpr std::size_t fewest_points = 5;
   constexpr std::size_t fewest_groups = 10;
   constexpr std::size_t most_samples = 4096;
-  GroundLevels levels{
-      Eigen::ArrayXXd::Constant(points.group_rows(), points.group_columns(), unknown)};
+  GroundLevels levels{Eigen::ArrayXXd::Constant(points.group_rows(), points.group_columns(), nan)};
   std::size_t groups = 0;
   for (Index group = 0; group < levels.height.size(); ++group) {
     if (points.in_group(group) >= fewest_points) ++groups;
@@ -211,7 +210,7 @@ Band GroundBands::band(Index cell) const {
 
 /// Medians above the slope of the group.
 void GroundBands::find_fine_levels() {
-  Eigen::ArrayXXd fine = Eigen::ArrayXXd::Constant(points_.rows(), points_.columns(), unknown);
+  Eigen::ArrayXXd fine = Eigen::ArrayXXd::Constant(points_.rows(), points_.columns(), nan);
   std::vector<float> heights;
   points_.for_each_cell([&](Index cell, CellRange in_cell) {
     const Band band = by_groups(cell);

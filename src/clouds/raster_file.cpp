@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <excavplan/ground/ascii_grid.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_formats.hpp"
 #include "clouds/las_system.hpp"
@@ -18,8 +18,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool holds_tiff(FileStream& file) {
   const std::string_view start = file.peek(4);

@@ -3,7 +3,6 @@
 #include <excavplan/design/cut_and_fill.hpp>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "design/pieces.hpp"
@@ -31,7 +31,6 @@ constexpr int sign_reach = 2;          // cells to every side, of whose mean the
 constexpr double of_highest = 0.25;    // of the largest difference, the deviation of unknown ground
 constexpr double most_overlap = 1e-3;  // of a design's area
 constexpr double whole_cell = 1.0 - 1e-9;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// What of the design lies in each cell, and how the ground lies to it.
 struct CellSums {

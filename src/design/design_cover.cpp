@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "design/pieces.hpp"
 #include "ground/map_check.hpp"
 
@@ -43,7 +44,6 @@ DesignCover cover_of(const DesignSurface& design, const HeightMap& grid) {
       cover.height(at.row, at.col) += sum.volume;
     });
   });
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   cover.height = (cover.share > 0.0).select(cover.height / cover.share, nan);
   cover.share /= grid.cell_size * grid.cell_size;
   return cover;

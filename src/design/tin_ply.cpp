@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "base/little_endian.hpp"
+#include "base/scalar.hpp"
 
 namespace excavplan {
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -60,8 +61,8 @@ void Panel::map(const Grid& grid, const ColourScale& scale, const std::string& u
 }
 
 void Panel::span(double from, double to, const std::string& colour, const std::string& legend) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();  // of y: no part of the view
-  shapes_.push_back({Kind::span, {{from, unknown}, {to, unknown}}, {"none", 0.0, colour}, legend});
+  // Of y: no part of the view.
+  shapes_.push_back({Kind::span, {{from, nan}, {to, nan}}, {"none", 0.0, colour}, legend});
 }
 
 bool Panel::has_map() const {

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/non_finite.hpp"
+
 namespace excavplan {
-namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 void CoarseGround::lay_out(const CellBlock& finer, double finer_cell_size, double wall) {
   cell_size_ = 2.0 * finer_cell_size;
@@ -20,10 +17,10 @@ void CoarseGround::lay_out(const CellBlock& finer, double finer_cell_size, doubl
   cells_ = cells;
   stride_ = cells.rows() + 2;
   const auto size = static_cast<std::size_t>(stride_ * (cells.cols() + 2));
-  bank_.assign(size, unknown);
+  bank_.assign(size, nan);
   loose_.assign(size, 0.0);
   before_.assign(size, 0.0);
-  height_.assign(size, unknown);
+  height_.assign(size, nan);
   awake_.assign(size, 0);
   slides_.assign(size, 0);
 }
@@ -48,7 +45,7 @@ void CoarseGround::take_in(const std::array<Part, 4>& parts, std::size_t cell) {
     slides = slides || part.slides;
   }
   const bool even = !std::isnan(bank) && high - low <= wall_;
-  bank_[cell] = even ? bank : unknown;
+  bank_[cell] = even ? bank : nan;
   height_[cell] = even || std::isnan(height) ? height : top;
   loose_[cell] = before_[cell] = even ? loose : 0.0;
   awake_[cell] = awake ? 1 : 0;

@@ -18,10 +18,10 @@ namespace {
 
 constexpr double largest_factor = 3.0;  // ours; rock swells to 1.8
 
-[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorKind::bad_input, why); }
+[[noreturn]] void refuse_content(const std::string& why) { throw Error(ErrorKind::bad_input, why); }
 
 void check(bool holds, const std::string& what, double value, const char* rule) {
-  if (!holds) refuse(what + ": " + number_text(value) + ", must be " + rule);
+  if (!holds) refuse_content(what + ": " + number_text(value) + ", must be " + rule);
 }
 
 Measured stated(const Measured& amount, const std::string& name) {
@@ -52,8 +52,8 @@ std::optional<Measured> factor_of(const LoggedDig& dig) {
 
 Measured needed_factor(const LoggedDig& dig, const char* for_what) {
   if (const auto factor = factor_of(dig)) return *factor;
-  refuse(dig.prefix + "bulking-factor is missing: " + for_what +
-         " is of undisturbed soil, the bucket holds loose soil");
+  refuse_content(dig.prefix + "bulking-factor is missing: " + for_what +
+                 " is of undisturbed soil, the bucket holds loose soil");
 }
 
 // ---- Scans ------------------------------------------------------------------------------------
@@ -183,7 +183,8 @@ LiftedSoil lifted_soil(const LoggedDig& dig) {
   if (const auto* payload = std::get_if<Payload>(&dig.lifted)) {
     const bool is_mass = payload->kind == Lifted::mass;
     if (is_mass && dig.bulking_factor) {
-      refuse(dig.prefix + "bulking-factor turns volumes into each other; a mass needs none");
+      refuse_content(dig.prefix +
+                     "bulking-factor turns volumes into each other; a mass needs none");
     }
     stated(payload->amount, dig.prefix + (is_mass ? "mass" : "volume"));
     result.payload = *payload;

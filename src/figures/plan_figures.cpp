@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
@@ -19,8 +19,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string worth_label(const DigObjective& objective) {
   const DigGoalInfo& goal = info_of(objective.goal);

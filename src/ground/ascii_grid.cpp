@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -13,6 +12,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
+#include "base/non_finite.hpp"
 #include "base/read_double.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
@@ -21,7 +21,6 @@ namespace excavplan {
 namespace {
 
 constexpr std::uint64_t most_grid_bytes = std::uint64_t{1} << 30;  ///< of most_cells; ours
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The words of a file, which blanks and ends of lines part.
 class Words {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/check.hpp"
-#include "base/little_endian.hpp"
+#include "base/non_finite.hpp"
 #include "base/scalar.hpp"
 
 namespace excavplan {
@@ -264,12 +264,11 @@ std::string geotiff_head(const LayeredMap& map, const MapNotes& notes) {
 }
 
 std::string geotiff_row(const Eigen::ArrayXXd& values, Eigen::Index row) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   std::string bytes;
   bytes.reserve(8 * static_cast<std::size_t>(values.cols()));
   for (Eigen::Index col = 0; col < values.cols(); ++col) {
     const double value = values(row, col);
-    put(std::isfinite(value) ? value : unknown, bytes);
+    put(std::isfinite(value) ? value : nan, bytes);
   }
   return bytes;
 }

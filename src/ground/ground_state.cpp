@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 
 #include "base/check.hpp"
 #include "base/files.hpp"
+#include "base/non_finite.hpp"
 #include "base/read_double.hpp"
 #include "base/scalar.hpp"
 #include "base/text.hpp"
@@ -269,8 +269,7 @@ GroundState after_dig(GroundState state, const Terrain& after) {
   if (state.deviation.size() > 0) {
     constexpr double rounding = 1e-9;  // [m]
     const Eigen::ArrayXXd change = after.surface().z - state.terrain.surface().z;
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    state.deviation = (change.abs() > rounding).select(unknown, state.deviation).eval();
+    state.deviation = (change.abs() > rounding).select(nan, state.deviation).eval();
   }
   Eigen::ArrayXXd told = std::move(state.terrain.bank_void_ratio);
   state.terrain = after;

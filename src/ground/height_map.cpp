@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <excavplan/base/ceilings.hpp>
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double grid_tolerance = 1e-9;  // of a cell
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The two cell centres around a place on one axis and the weight of the second.
 struct Bracket {

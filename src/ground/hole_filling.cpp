@@ -173,9 +173,9 @@ bool heights_at(const Eigen::ArrayXXd& z, const std::vector<Cell>& cells, const 
 }
 
 /// Distance of heights from the planes: least squares on (1, row, col) of the cells.
-class Relief {
+class RimRelief {
  public:
-  explicit Relief(const std::vector<Cell>& cells) : plane_(cells.size(), 3) {
+  explicit RimRelief(const std::vector<Cell>& cells) : plane_(cells.size(), 3) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       plane_.row(static_cast<Eigen::Index>(i)) << 1.0, static_cast<double>(cells[i].row),
           static_cast<double>(cells[i].col);
@@ -254,7 +254,7 @@ double error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
   }
   const Functional plate = functional_of(z, hole, sums, Filling::thin_plate);
   const Functional membrane = functional_of(z, hole, sums, Filling::membrane);
-  const Relief relief(plate.rim);
+  const RimRelief relief(plate.rim);
 
   Eigen::VectorXd rim;
   Eigen::VectorXd rim_of_membrane;

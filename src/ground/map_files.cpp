@@ -5,14 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string_view>
 
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/files.hpp"
-#include "base/little_endian.hpp"
+#include "base/non_finite.hpp"
+#include "base/scalar.hpp"
 #include "base/text.hpp"
 #include "ground/geotiff.hpp"
 #include "ground/grid_cells.hpp"
@@ -24,7 +24,6 @@ namespace {
 using Append = std::function<void(std::string_view)>;
 
 constexpr const char* ascii_nodata = "-9999";
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string ending_of(const std::string& file) {
   return small_letters(std::filesystem::path(file).extension().string());

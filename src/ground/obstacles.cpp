@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
@@ -26,7 +26,6 @@ constexpr double largest = 20.0;        // of an obstacle: the top of a truck [m
 constexpr double own_rim = 0.3;         // within which ground of its own height adjoins a rim [m]
 constexpr double around = 1.2;          // within which else the ground around is looked for [m]
 constexpr double least_falling = 0.25;  // of the rim of an obstacle that is a face
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Index cells_in(double length, double cell) {
   return std::max<Index>(1, static_cast<Index>(std::lround(length / cell)));

@@ -15,6 +15,7 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
 
@@ -22,8 +23,6 @@ namespace excavplan {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<std::string>& keys() {
   static const std::vector<std::string> list = {"bank", "loose", "bank_density_percent",

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/normal_equations.hpp"
 #include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
@@ -26,7 +26,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_cells = 100;
 constexpr double tukey = 4.685;            // 95 % efficient for normal noise
 constexpr double tukey_variance = 1.594;   // E w / (E psi')^2 of it for normal noise

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/map_check.hpp"
@@ -16,7 +16,6 @@ namespace excavplan {
 namespace {
 
 constexpr double rounding = 1e-9;  // of a cell
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Unknown cells in a row through one of them, which lies in a hole.
 /// @param step  (0, 1) along x, (1, 0) along y

@@ -7,12 +7,11 @@
 #include <limits>
 #include <vector>
 
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Points that a whole cell of level ground holds. Equal angles between rays give points per area
 /// in proportion to height over range^3.

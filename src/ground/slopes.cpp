@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/non_finite.hpp"
+
 namespace excavplan {
 
 Gradient gradient_of(const HeightMap& map) {
@@ -29,7 +31,6 @@ Gradient gradient_of(const HeightMap& map) {
 }
 
 Eigen::ArrayXXd slope_limited(const Eigen::ArrayXXd& z, double rise) {
-  const double infinity = std::numeric_limits<double>::infinity();
   const double diagonal = rise * std::sqrt(2.0);
   Eigen::ArrayXXd limit = z.isNaN().select(infinity, z);
   const auto lower = [&](Eigen::Index row, Eigen::Index col, Eigen::Index step) {

@@ -4,12 +4,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
@@ -17,8 +17,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 void require_valid(const DepthIntrinsics& intrinsics) {
   const auto require = [](bool holds, const char* name, double value, const char* rule) {
@@ -124,7 +122,7 @@ AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
     const auto row = static_cast<double>(line);
     average.frames.push_back(is_known ? mean.count : 0);
     average.cloud.points.push_back(is_known ? camera.point_of_counts(column, row, mean.value)
-                                            : Eigen::Vector3d::Constant(unknown));
+                                            : Eigen::Vector3d::Constant(nan));
   }
   return average;
 }

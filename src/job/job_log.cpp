@@ -11,6 +11,7 @@
 #include "base/files.hpp"
 #include "base/input_file.hpp"
 #include "base/json.hpp"
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 #include "job/step_json.hpp"
 #include "site/cell_codes.hpp"
@@ -27,7 +28,6 @@ constexpr const char* log_file = "job-log.jsonl";
 constexpr std::uint64_t most_log_bytes = std::uint64_t{1} << 28;  // ours
 constexpr std::size_t most_code_bytes = std::size_t{1} << 26;     // of one patch; ours
 constexpr std::size_t most_message_bytes = 900;                   // so that it can be read; ours
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Of a cell in a patch of JobEvent::seen_at.
 constexpr int seen_now = 1;
 constexpr int never_seen = 2;

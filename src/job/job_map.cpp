@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -12,6 +11,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/plan_geometry.hpp"
 #include "base/statistics.hpp"
 #include "ground/window.hpp"
@@ -24,13 +24,12 @@ constexpr double least_seen = 0.99;  // of a finished design; ours
 using Eigen::ArrayXXd;
 using Eigen::Vector2d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double flattest_face = 0.15;  // of a batter; ours [rad]
-constexpr double wide_wall = 0.15;      // of a wall, so that it is none of the floor; ours [m]
-constexpr double least_faces = 0.1;     // share of the design; ours
-constexpr double of_no_floor = 0.005;   // share of cells taken for floor at each end; ours
-constexpr double around_rim = 0.1;      // of a cell, where ground is compared; ours [m]
-constexpr double least_share = 0.5;     // of a cell that is one of the design
+constexpr double flattest_face = 0.15;   // of a batter; ours [rad]
+constexpr double wide_wall = 0.15;       // of a wall, so that it is none of the floor; ours [m]
+constexpr double least_faces = 0.1;      // share of the design; ours
+constexpr double of_no_floor = 0.005;    // share of cells taken for floor at each end; ours
+constexpr double around_rim = 0.1;       // of a cell, where ground is compared; ours [m]
+constexpr double share_of_design = 0.5;  // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
 /// The cells of a polygon.
@@ -164,7 +163,7 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   map.before = ground.z;
   const DesignCover cover = cover_of(settings.surface, ground);
   map.target.z =
-      below_ground((cover.share >= least_share).select(cover.height, std::nan("")), ground);
+      below_ground((cover.share >= share_of_design).select(cover.height, std::nan("")), ground);
   map.counts = counting(map.target, design.edge_margin);
   map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
   for (const DumpArea& area : design.dump_areas) {

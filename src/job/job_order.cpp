@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 // The description of a plain site, with what that does not hold in `kept`.
 constexpr const char* order_file = "/order.json";
-constexpr const char* format = "plain-site";
+constexpr const char* order_format = "plain-site";
 constexpr const char* law_name = "order-law.json";
 constexpr const char* tin_name = "order-design.ply";
 constexpr const char* raster_name = "order-design.tif";
@@ -36,7 +36,7 @@ Json corners(const SitePolygon& polygon) {
 
 /// As read_plain_site() reads it.
 Json site_json(const JobDesign& job) {
-  Json json = {{"format", format},
+  Json json = {{"format", order_format},
                {"version", 1},
                {"id", job.name},
                {"tolerance_m", job.tolerance},
@@ -135,7 +135,7 @@ JobSettings load_order(const std::string& folder) {
     throw Error(ErrorKind::bad_file, folder + ": holds no job: it has no order.json");
   }
   JsonObject object =
-      JsonObject::open_sealed(path, read_own_file(path, most_foreign_bytes), format);
+      JsonObject::open_sealed(path, read_own_file(path, most_foreign_bytes), order_format);
   JobSettings settings;
   settings.design = read_plain_site(path);
   JsonObject kept = object.object("kept");

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format = "excavplan job";
+constexpr const char* record_format = "excavplan job";
 constexpr int version = 8;
 constexpr int numbers_of_pose = 6;
 
@@ -232,14 +232,10 @@ std::string path_of(const std::string& folder) { return folder + "/" + job_file;
 std::string earlier_path(const std::string& folder) { return folder + "/job-before.json"; }
 
 Json record_json(const JobRecord& record) {
-  Json json = {{"format", format},
-               {"version", version},
-               {"station", record.station},
-               {"base", base_json(record.base)},
-               {"last_step", record.last_step},
-               {"site_updates", record.site_updates},
-               {"wants_scan", record.wants_scan},
-               {"has_arrived", record.has_arrived}};
+  Json json = {{"format", record_format},         {"version", version},
+               {"station", record.station},       {"base", base_json(record.base)},
+               {"last_step", record.last_step},   {"site_updates", record.site_updates},
+               {"wants_scan", record.wants_scan}, {"has_arrived", record.has_arrived}};
   for_each_count(record, [&](const char* key, int value) { json[key] = value; });
   for_each_number(record, [&](const char* key, double value) { json[key] = value; });
   json["learning"] = learning_json(record.learning);
@@ -274,7 +270,7 @@ Json record_json(const JobRecord& record) {
 }
 
 JobRecord read_record(const std::string& path) {
-  JsonObject object = JsonObject::open_sealed(path, read_own_file(path), format, version);
+  JsonObject object = JsonObject::open_sealed(path, read_own_file(path), record_format, version);
   JobRecord record;
   record.station = static_cast<std::size_t>(object.number("station", 0, 1e6));
   record.base = read_base(object);

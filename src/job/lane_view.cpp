@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <vector>
 
+#include "base/non_finite.hpp"
 #include "base/plan_geometry.hpp"
 
 namespace excavplan {
@@ -17,8 +17,6 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Index top_part = 4;  // the highest quarter of the soil under the bucket meets it; ours
 constexpr double edge_slack =
     0.04;  // by which the bucket's edge may be beside the design or within a face; ours [m]

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 constexpr int headings = 8;
 constexpr double place_step = 0.5;         // of places to stand [m]
 constexpr double same_place = 1.0;         // [m]
-constexpr double farthest = 5.0;           // from the design along, from what is hidden across [m]
+constexpr double farthest_look = 5.0;      // from the design along, from what is hidden across [m]
 constexpr std::size_t most_cells = 200;    // that are looked for from each place
 constexpr double least_revealed = 0.0005;  // of the design, to be worth a scan
 constexpr std::size_t most_looks = 3;      // that are planned at once
@@ -75,9 +75,9 @@ class Lookout {
     box.min().x() = task_.frame.near;
     box.max().x() = task_.frame.far;
     const auto steps = [&](int axis) {
-      return static_cast<int>((box.sizes()[axis] + 2.0 * farthest) / place_step);
+      return static_cast<int>((box.sizes()[axis] + 2.0 * farthest_look) / place_step);
     };
-    const Vector2d first = box.min() - Vector2d(farthest, farthest);
+    const Vector2d first = box.min() - Vector2d(farthest_look, farthest_look);
     for (int i = 0; i <= steps(0); ++i) {
       for (int k = 0; k <= steps(1); ++k) {
         for (int h = 0; h < headings; ++h) {

@@ -53,7 +53,7 @@ constexpr int most_fruitless_digs = 8;       // likewise of digs for volume
 constexpr int most_fruitless_wide = 12;      // likewise where many places are left to dig from
 constexpr int rounds_of_ends = 2;            // of a wide design, after each was dug from once
 constexpr double far_end = 0.8;              // that may slope until it is dug from beyond [m]
-constexpr double same_place = 0.3;           // of the machine: to move there changes nothing [m]
+constexpr double as_good_as_there = 0.3;     // of the machine: to move there changes nothing [m]
 constexpr int most_moves_to_dump = 3;        // from one station, in succession without a dig
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
 constexpr double thin_bench = 0.15;          // likewise where its sides are faces along the lanes
@@ -77,7 +77,7 @@ constexpr int most_blocked = 4;   // digs from one place whose way is blocked, b
 constexpr int most_doubtful = 2;  // digs not to be trusted, before the first of them is offered
 constexpr int most_softer = 4;    // deviations of the strength below its mean that are tried
 constexpr int softer_again = 1;   // likewise where the last dig stalled or lifted hardly any
-constexpr std::size_t most_looks = 4;        // at the end, and once more
+constexpr std::size_t looks_at_end = 4;      // at the end, and once more
 constexpr std::size_t looks_on_way = 3;      // to a place beyond the far end
 constexpr double near_well_seen = 0.996;     // then, as the far end will hide something too
 constexpr double least_newly_seen = 0.0005;  // by a look, or others will see no more
@@ -155,7 +155,7 @@ struct SiteJob::State {
         ends.insert(ends.end(), beyond.begin(), beyond.end());
       }
     }
-    const std::vector<JobStation> looks(most_looks, lookout);
+    const std::vector<JobStation> looks(looks_at_end, lookout);
     std::vector<JobStation> again = once_more(stations);
     if (again.empty()) again.push_back(last);
     for (const auto& more : {ends, looks, again, looks})
@@ -747,7 +747,7 @@ std::optional<JobStation> SiteJob::State::place_to_dump_from() {
   if (!place) return place;
   const Eigen::Vector2d off =
       line.of({record.base.x, record.base.y}) - Eigen::Vector2d(place->along, place->beside);
-  if (!(off.norm() > same_place)) return std::nullopt;
+  if (!(off.norm() > as_good_as_there)) return std::nullopt;
   ++record.moves_to_dump;
   record.is_sent_again = true;
   return place;
@@ -757,7 +757,7 @@ std::optional<JobStation> SiteJob::State::place_to_dump_from() {
 std::optional<JobStation> SiteJob::State::missed_place(const JobProgress& now) const {
   const JobStation& station = stations[record.station];
   if (station.is_lookout() || record.is_sent_again) return std::nullopt;
-  if (!(record.off_place > same_place)) return std::nullopt;
+  if (!(record.off_place > as_good_as_there)) return std::nullopt;
   const auto place = next_place(now);
   if (!place) return std::nullopt;
   const BasePose base = base_of(*place);

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <excavplan/machine/kinematics.hpp>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 #include "machine/data_sheet_keys.hpp"
 #include "machine/machine_mass.hpp"
@@ -21,7 +21,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double gravity = 9.80665;  // [m/s^2]
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int steps = 120;
 
 double at(const JointLimits& limits, int step) {

@@ -31,7 +31,7 @@ const Channel power_channel = {
     Measure::power,
     {"power", "joint_power", "shaft_power", "engine_power", "hydraulic_power", "pump_power"}};
 
-[[noreturn]] void refuse(const std::string& file, const std::string& why) {
+[[noreturn]] void refuse_log(const std::string& file, const std::string& why) {
   throw Error(ErrorKind::bad_file, file + ": " + why);
 }
 
@@ -76,35 +76,35 @@ std::string time_name(const LogTable& log) {
   }
   if (found.size() == 1) return found[0];
   if (found.empty()) {
-    refuse(log.source.file, "has no column 'time_s', its columns are: " + log.table.listed_names() +
-                                ": state the column of the time");
+    refuse_log(log.source.file, "has no column 'time_s', its columns are: " +
+                                    log.table.listed_names() + ": state the column of the time");
   }
-  refuse(log.source.file, "holds both " + safe_text(found[0], 40) + " and " +
-                              safe_text(found[1], 40) +
-                              ", expected one of them: state the column of the time");
+  refuse_log(log.source.file, "holds both " + safe_text(found[0], 40) + " and " +
+                                  safe_text(found[1], 40) +
+                                  ", expected one of them: state the column of the time");
 }
 
 std::vector<double> read_clock(const LogTable& log, const std::string& name,
                                const std::vector<std::string>& texts) {
   ClockTimes times = clock_times(texts);
   if (times.fault.empty()) return std::move(times.seconds);
-  refuse(log.source.file, at_line(log.table, times.bad_row) + safe_text(name, 40) + " is " +
-                              in_quotes(texts[times.bad_row]) + ", " + times.fault);
+  refuse_log(log.source.file, at_line(log.table, times.bad_row) + safe_text(name, 40) + " is " +
+                                  in_quotes(texts[times.bad_row]) + ", " + times.fault);
 }
 
 void require_increasing(const LogTable& log, const std::vector<double>& time,
                         const std::string& name) {
   for (std::size_t i = 1; i < time.size(); ++i) {
     if (time[i] > time[i - 1]) continue;
-    refuse(log.source.file, at_line(log.table, i) + safe_text(name, 40) + " is " +
-                                number_text(time[i]) + " s, must be above " +
-                                number_text(time[i - 1]) + " s of the row before");
+    refuse_log(log.source.file, at_line(log.table, i) + safe_text(name, 40) + " is " +
+                                    number_text(time[i]) + " s, must be above " +
+                                    number_text(time[i - 1]) + " s of the row before");
   }
 }
 
 std::vector<double> times_of(const LogTable& log) {
   const std::string name = time_name(log);
-  if (log.table.rows() < 2) refuse(log.source.file, "holds one row, at least 2 are needed");
+  if (log.table.rows() < 2) refuse_log(log.source.file, "holds one row, at least 2 are needed");
   const std::vector<std::string> texts = log.table.texts(name);
   if (texts.front().find(':') != std::string::npos) return read_clock(log, name, texts);
   std::vector<double> time =
@@ -157,8 +157,8 @@ std::optional<std::array<std::vector<double>, 3>> read_joints(
   if (found == std::array<bool, 3>{}) return std::nullopt;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (found[i]) continue;
-    refuse(log.source.file, "has no column of " + (joints[i] + endings.front()) +
-                                ", but of another joint; all three are needed");
+    refuse_log(log.source.file, "has no column of " + (joints[i] + endings.front()) +
+                                    ", but of another joint; all three are needed");
   }
   return values;
 }
@@ -195,13 +195,13 @@ std::optional<Reading> read_pressures(const LogTable& log) {
   for (const auto& [values, name] :
        {std::pair(&head, "head_pressure"), {&rod, "rod_pressure"}, {&speed, "piston_speed"}}) {
     if (!*values) {
-      refuse(log.source.file, std::string("has no columns of boom_") + name +
-                                  " and so on, which pressures of cylinders need");
+      refuse_log(log.source.file, std::string("has no columns of boom_") + name +
+                                      " and so on, which pressures of cylinders need");
     }
   }
   if (!log.source.pistons) {
-    refuse(log.source.file,
-           "holds pressures of cylinders, but the areas of the pistons are unknown");
+    refuse_log(log.source.file,
+               "holds pressures of cylinders, but the areas of the pistons are unknown");
   }
   Reading reading{"boom_head_pressure", LogMeter::pressures, {}};
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -240,19 +240,20 @@ Reading reading_of(const LogTable& log) {
     auto reading = read_meter(log, meter);
     if (!reading) continue;
     if (found) {
-      refuse(log.source.file, "holds both " + found->first_column + " and " +
-                                  reading->first_column +
-                                  ", expected one of them: state the meter");
+      refuse_log(log.source.file, "holds both " + found->first_column + " and " +
+                                      reading->first_column +
+                                      ", expected one of them: state the meter");
     }
     found = std::move(reading);
   }
   if (found) return *found;
-  refuse(log.source.file,
-         "has no column of fuel or power, expected one of fuel_flow_ml_per_s, fuel_flow_l_per_h, "
-         "power_w, or of boom, arm and bucket each boom_power_w, boom_torque_n_m with "
-         "boom_rate_rad_per_s, or boom_head_pressure_pa with boom_rod_pressure_pa and "
-         "boom_piston_speed_m_per_s; its columns are: " +
-             log.table.listed_names() + ": state the column of fuel or power");
+  refuse_log(
+      log.source.file,
+      "has no column of fuel or power, expected one of fuel_flow_ml_per_s, fuel_flow_l_per_h, "
+      "power_w, or of boom, arm and bucket each boom_power_w, boom_torque_n_m with "
+      "boom_rate_rad_per_s, or boom_head_pressure_pa with boom_rod_pressure_pa and "
+      "boom_piston_speed_m_per_s; its columns are: " +
+          log.table.listed_names() + ": state the column of fuel or power");
 }
 
 /// What is finite in the file may not be so in other units, or as a product.
@@ -261,9 +262,10 @@ void require_finite(const LogTable& log, const Reading& reading) {
     const auto is_finite = [](double value) { return std::isfinite(value); };
     const auto bad = std::find_if_not(part.begin(), part.end(), is_finite);
     if (bad == part.end()) continue;
-    refuse(log.source.file, at_line(log.table, static_cast<std::size_t>(bad - part.begin())) +
-                                name(reading.meter) + " of " + safe_text(reading.first_column, 40) +
-                                " is too large for a number");
+    refuse_log(log.source.file, at_line(log.table, static_cast<std::size_t>(bad - part.begin())) +
+                                    name(reading.meter) + " of " +
+                                    safe_text(reading.first_column, 40) +
+                                    " is too large for a number");
   }
 }
 
@@ -319,8 +321,9 @@ void find_digs(const LogTable& log, DigLog& result) {
     const auto arm = log.find({Measure::angle, {"arm", "arm_angle", "arm_joint"}});
     const auto bucket = log.find({Measure::angle, {"bucket", "bucket_angle", "bucket_joint"}});
     if (!arm || !bucket) {
-      refuse(log.source.file,
-             "has no columns arm_rad and bucket_rad, which finding the dig by the joints needs");
+      refuse_log(
+          log.source.file,
+          "has no columns arm_rad and bucket_rad, which finding the dig by the joints needs");
     }
     digs = found_digs(result.time, log.values(*arm), log.values(*bucket));
   }
@@ -330,11 +333,11 @@ void find_digs(const LogTable& log, DigLog& result) {
     if (part.from < part.to) counted.push_back(part);
   }
   if (counted.empty()) {
-    refuse(log.source.file,
-           "holds no dig from " + number_text(result.whole.from) + " to " +
-               number_text(result.whole.to) + " s" +
-               (wanted == PhaseSource::marked ? ": no row there is of penetrate, drag or scoop"
-                                              : ": arm and bucket do not curl in there"));
+    refuse_log(log.source.file,
+               "holds no dig from " + number_text(result.whole.from) + " to " +
+                   number_text(result.whole.to) + " s" +
+                   (wanted == PhaseSource::marked ? ": no row there is of penetrate, drag or scoop"
+                                                  : ": arm and bucket do not curl in there"));
   }
   result.phases = wanted;
   result.digs = std::move(counted);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -36,7 +37,6 @@ std::variant<TwoLinks, Unreachable> bridge(const Vector2d& to, double first, dou
   const double cosine =
       (distance * distance - first * first - second * second) / (2.0 * first * second);
   if (std::isnan(cosine)) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     return Unreachable{Unreachable::Reason::too_far, Joint::boom, infinity, first, infinity};
   }
   if (cosine > 1.0 + rounding) {

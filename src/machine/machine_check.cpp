@@ -3,7 +3,6 @@
 #include "machine/machine_check.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,13 +10,13 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double longest = 100.0;  // as load_machine() [m]
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Texts are made only of what breaks a rule: the checks run before every path.
 class Rules {

@@ -18,7 +18,6 @@ namespace {
 using Eigen::Vector3d;
 using std::string;
 
-constexpr std::array<const char*, 3> words = {"boom", "arm", "bucket"};
 constexpr double most_skew = 1e-3;          // sine of an angle; pi / 2 is often rounded to 1.5708
 constexpr double placeholder_error = 0.01;  // of a rounded pi / 2 or 2 pi [rad]; ours
 constexpr double clear_bend = 0.1;          // sine of a bend that is meant; ours
@@ -70,7 +69,7 @@ class Chain {
 
   void find_joints() {
     for (std::size_t i = 0; i < 3; ++i) {
-      chain_.parts[i].joint = named(names_.joints[i], words[i]);
+      chain_.parts[i].joint = named(names_.joints[i], front_words[i]);
     }
   }
 
@@ -115,7 +114,7 @@ class Chain {
                                   [](const UrdfJoint& joint) { return is_range(&joint); });
     string ends;
     const auto add = [&](std::size_t i, const char* end, const std::optional<double>& stated) {
-      if (!stated) ends += (ends.empty() ? "joints." : ", joints.") + string(words[i]) + end;
+      if (!stated) ends += (ends.empty() ? "joints." : ", joints.") + string(front_words[i]) + end;
     };
     for (std::size_t i = 0; i < 3; ++i) {
       chain_.has_range[i] = is_range(parts[i].joint) && !alike;

@@ -14,6 +14,9 @@
 
 namespace excavplan {
 
+/// What the parts of a front are called in the JSON beside a URDF.
+inline constexpr std::array<const char*, 3> front_words = {"boom", "arm", "bucket"};
+
 /// What is what in a URDF, and what the JSON beside it says instead; by default the names of
 /// OPERA's machines.
 struct UrdfNames {

@@ -21,7 +21,6 @@ namespace {
 using nlohmann::json;
 using std::string;
 
-constexpr std::array<const char*, 3> words = {"boom", "arm", "bucket"};
 constexpr double most_apart = 4.0;  // of a number and that of a usual machine of the size; ours
 
 /// By which power of its length a number of a machine grows: ours, from data sheets of 1.7 to 20 t
@@ -113,7 +112,7 @@ class FromUrdf {
                 {"boom_length_m", front_.parts[0].length},
                 {"arm_length_m", front_.parts[1].length},
                 {"bucket_length_m", front_.parts[2].length}};
-    for (std::size_t i = 0; i < 3; ++i) add_part(front_.parts[i], words[i]);
+    for (std::size_t i = 0; i < 3; ++i) add_part(front_.parts[i], front_words[i]);
     add("swing.speed_rad_per_s", front_.swing.velocity);
     add("swing.torque_n_m", front_.swing.effort);
     if (front_.swing.lower) {
@@ -195,7 +194,8 @@ void read_names(JsonObject file, UrdfNames& names) {
     if (!none) names.swing = file.text("swing");
     file.ignore("swing");
   }
-  for (std::size_t i = 0; i < 3; ++i) names.joints[i] = file.text_or(words[i], names.joints[i]);
+  for (std::size_t i = 0; i < 3; ++i)
+    names.joints[i] = file.text_or(front_words[i], names.joints[i]);
   if (file.has("tip_m")) {
     if (file.has("tip")) file.fail("tip_m", "found it beside 'tip', expected one of the two");
     const std::vector<double> at = file.numbers("tip_m", 3);
@@ -215,8 +215,8 @@ void read_ranges(const json& numbers, UrdfNames& names) {
     return numbers.at(at).get<double>();
   };
   for (std::size_t i = 0; i < 3; ++i) {
-    names.ranges[i].lower = stated(string(words[i]) + "/lower_rad");
-    names.ranges[i].upper = stated(string(words[i]) + "/upper_rad");
+    names.ranges[i].lower = stated(string(front_words[i]) + "/lower_rad");
+    names.ranges[i].upper = stated(string(front_words[i]) + "/upper_rad");
   }
 }
 
@@ -306,7 +306,7 @@ void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
     if (angle.zero == 0.0) return;
     text += (angle.zero < 0.0 ? " - " : " + ") + readable(std::abs(angle.zero), 6);
   };
-  for (std::size_t i = 0; i < 3; ++i) add(words[i], front.parts[i].angle);
+  for (std::size_t i = 0; i < 3; ++i) add(front_words[i], front.parts[i].angle);
   add("swing", front.swing_angle);
   if (text.empty()) return;
   warnings.emplace_back(

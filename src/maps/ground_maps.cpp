@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/non_finite.hpp"
+
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A layer with its name on the command line.
 struct Shown {

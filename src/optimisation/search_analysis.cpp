@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Dense>
 
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_log.hpp"
@@ -149,13 +149,12 @@ void average(RepeatedEvaluation& point, const Evaluation* outcomes) {
     sum += outcomes[i].fitness;
     ++point.ok;
   }
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  point.mean = point.ok > 0 ? sum / point.ok : unknown;
+  point.mean = point.ok > 0 ? sum / point.ok : nan;
   double squares = 0.0;
   for (int i = 0; i < point.repeats; ++i) {
     if (outcomes[i].ok()) squares += std::pow(outcomes[i].fitness - point.mean, 2);
   }
-  point.sd = point.ok > 1 ? std::sqrt(squares / (point.ok - 1)) : unknown;
+  point.sd = point.ok > 1 ? std::sqrt(squares / (point.ok - 1)) : nan;
 }
 
 }  // namespace

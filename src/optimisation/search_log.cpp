@@ -11,6 +11,7 @@
 
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/parallel.hpp"
 #include "optimisation/sound_evaluation.hpp"
 
@@ -20,7 +21,6 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int certain = 20;  // consecutive failures from the start that end the search; ours
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 bool failed(const Evaluation& outcome) {
   return outcome.status == Evaluation::Status::failed ||
@@ -59,7 +59,7 @@ SearchLog::SearchLog(const SearchProblem& problem, const SearchOptions& options,
   const int limit = options.stop.evaluations;
   const int most = limit > 0 ? limit : std::numeric_limits<int>::max();
   progress_.planned = static_cast<int>(std::min<double>(most, planned));
-  progress_.best = progress_.mean = progress_.seconds_left = unknown;
+  progress_.best = progress_.mean = progress_.seconds_left = nan;
   checkpoint_.verify_best(problem.objective);
 }
 
@@ -132,7 +132,7 @@ void SearchLog::halt(StopReason reason) {
 
 double SearchLog::seconds_left() const {
   const int evaluations_left = std::max(0, progress_.planned - progress_.evaluations);
-  const double left = fresh_ > 0 ? progress_.seconds / fresh_ * evaluations_left : unknown;
+  const double left = fresh_ > 0 ? progress_.seconds / fresh_ * evaluations_left : nan;
   const double limit = options_.stop.seconds;
   return limit > 0.0 ? std::fmin(left, std::max(0.0, limit - progress_.seconds)) : left;
 }
@@ -285,7 +285,7 @@ void SearchLog::note_generation(int generation, const std::vector<int>& places) 
     ++feasible;
   }
   progress_.generation = generation;
-  progress_.mean = feasible > 0 ? sum / feasible : unknown;
+  progress_.mean = feasible > 0 ? sum / feasible : nan;
   if (halted_) return;
   tell(std::chrono::duration<double>(Clock::now() - begin_).count());
   check_rules();

@@ -15,6 +15,7 @@
 
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/text.hpp"
 
 // PCL's filters write to the console only where they are misused (no points, more voxels than an
@@ -24,8 +25,6 @@ namespace excavplan {
 namespace {
 
 using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(ErrorKind::bad_input, "paper method: " + what);
@@ -186,12 +185,12 @@ VolumeChange paper_volumes(const CloudPair& dig, const CloudPair& dump, double l
   const auto dug = changed_soil(dig, leaf, options);
   const auto heap = changed_soil(dump, leaf, options);
   VolumeChange change;
-  change.excavated = {clipped_sum(*dug, -1.0, leaf), unknown};
-  change.spilled = {clipped_sum(*dug, +1.0, leaf), unknown};
-  change.dumped = {clipped_sum(*heap, +1.0, leaf), unknown};
+  change.excavated = {clipped_sum(*dug, -1.0, leaf), nan};
+  change.spilled = {clipped_sum(*dug, +1.0, leaf), nan};
+  change.dumped = {clipped_sum(*heap, +1.0, leaf), nan};
   change.before = change.excavated;
-  change.after = {change.spilled.value + change.dumped.value, unknown};
-  change.covariance_before_after = unknown;
+  change.after = {change.spilled.value + change.dumped.value, nan};
+  change.covariance_before_after = nan;
   return change;
 }
 

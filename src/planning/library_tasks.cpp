@@ -27,7 +27,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, rank, evaluatio
 
 namespace {
 
-constexpr const char* format = "excavplan-library-entry";
+constexpr const char* entry_format = "excavplan-library-entry";
 constexpr std::size_t longest_identity = 65536;  // [byte]; ours
 constexpr std::size_t longest_shown = 400;       // of one in a message [byte]
 
@@ -238,7 +238,7 @@ std::string do_task(const LibraryJob& job, const std::string& text,
                        progress);
   const LibraryAnswer found = answer(job, task, attempts);
   if (attempts.stopped()) return {};
-  return sealed_text({{"format", format},
+  return sealed_text({{"format", entry_format},
                       {"version", 1},
                       {"identity", identity(job, place)},
                       {"answer", nlohmann::json(found)}});
@@ -246,7 +246,7 @@ std::string do_task(const LibraryJob& job, const std::string& text,
 
 LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, const std::string& name,
                           const std::string& text) {
-  JsonObject file = JsonObject::open_sealed(name, text, format);
+  JsonObject file = JsonObject::open_sealed(name, text, entry_format);
   const std::string wanted = identity(job, place);
   if (const std::string own = file.text("identity", longest_identity); own != wanted) {
     file.fail("identity", "is '" + safe_text(own, longest_shown) +

@@ -17,10 +17,10 @@
 namespace excavplan {
 namespace {
 
-constexpr const char* format = "excavplan-path-library";
+constexpr const char* library_format = "excavplan-path-library";
 constexpr int version = 6;
 
-constexpr double most_evaluations = 1e9;
+constexpr double most_evaluations_of_entry = 1e9;
 
 /// Rises with slope and density, in this order.
 template <typename Item>
@@ -74,7 +74,8 @@ PathLibraryEntry read_entry(JsonObject& object) {
   entry.dig = read_dig(object);
   entry.to_next_density = read_interpolation(object, "midway");
   entry.to_next_slope = read_interpolation(object, "midway_slope");
-  entry.evaluations = static_cast<int>(object.number("evaluations", 0.0, most_evaluations));
+  entry.evaluations =
+      static_cast<int>(object.number("evaluations", 0.0, most_evaluations_of_entry));
   object.done();
   return entry;
 }
@@ -180,7 +181,7 @@ int PathLibrary::evaluations() const {
 }
 
 PathLibrary load_path_library(const std::string& path) {
-  JsonObject file = JsonObject::open_sealed(path, read_file(path), format, version);
+  JsonObject file = JsonObject::open_sealed(path, read_file(path), library_format, version);
   PathLibrary library;
   library.file = path;
   library.machine = file.text("machine");
@@ -213,7 +214,7 @@ std::string file_name(const PathLibrary& library) {
 }
 
 std::string to_json(const PathLibrary& library) {
-  nlohmann::ordered_json file = {{"format", format},
+  nlohmann::ordered_json file = {{"format", library_format},
                                  {"version", version},
                                  {"machine", library.machine},
                                  {"soil", library.soil},

@@ -12,6 +12,7 @@
 #include <excavplan/base/ceilings.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "ground/terrain.hpp"
 #include "planning/dig_problem.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 using Eigen::Index;
 
 constexpr int most_together = 8;  // ours
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Means of a layer over the cells that are known, each as heavy as `weight` says. Rounding puts
 /// none beside what it is the mean of.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
 
@@ -22,7 +23,6 @@ constexpr double slack = 0.01;      // of the way off and onto the ground [m]
 constexpr double under_link = 0.1;  // of a link's body below its line from pin to pin [m]
 constexpr double cells_in_reach = 200.0;
 constexpr double track_height = 0.5;  // of the undercarriage, over track_front: 0.9 m of a zx120
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Unknown cells over the reach; where they are as large as those of the ground, they are the same.
 HeightMap grid_over(const Machine& machine, const HeightMap& ground) {

@@ -12,18 +12,21 @@
 namespace excavplan {
 namespace {
 
-constexpr std::string_view magic = "#ROSBAG V2.0\n";
+constexpr std::string_view bag_magic = "#ROSBAG V2.0\n";
 constexpr std::uint64_t longest_header = 1 << 16;  // of a chunk or a bag; ours [byte]
 
 constexpr std::size_t most_fields = 100;  // of a header; ours
 
-enum Op : std::uint8_t {
-  message = 2,
-  bag = 3,
-  index = 4,
-  chunk = 5,
-  chunk_info = 6,
-  connection = 7
+/// What kind a record is of.
+struct Op {
+  enum : std::uint64_t {
+    message = 2,
+    bag = 3,
+    index = 4,
+    chunk = 5,
+    chunk_info = 6,
+    connection = 7
+  };
 };
 
 /// The fields "name=value" of a header.
@@ -59,7 +62,7 @@ class Fields {
   std::uint32_t u32(std::string_view name) const {
     return static_cast<std::uint32_t>(number(name, 4));
   }
-  void require_op(Op op) const {
+  void require_op(std::uint64_t op) const {
     const std::uint64_t found = number("op", 1);
     if (found == op) return;
     before_.fail("a record of op " + std::to_string(found), "op " + std::to_string(op));
@@ -91,7 +94,7 @@ std::int64_t time_field(const Fields& fields, std::string_view name) {
 }
 
 /// The header of a Chunk record and where its data lie.
-struct ChunkHead {
+struct BagChunkHead {
   std::string compression;
   std::uint64_t uncompressed = 0;  // [byte]
   std::uint64_t data = 0;          // where in the file
@@ -133,14 +136,15 @@ class BagRecording : public ChunkedContainer {
   std::int64_t last_scanned() const;
   void scan_chunk(std::uint64_t offset, std::uint64_t length);
   Bytes header_at(std::uint64_t offset) const;
-  ChunkHead head_of(const RecordedChunk& chunk) const;
+  BagChunkHead head_of(const RecordedChunk& chunk) const;
 
   bool is_cut_off_ = false;
 };
 
 void BagRecording::require_version() const {
-  const Bytes start = file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size()), "magic");
-  if (start.view() != magic) {
+  const Bytes start =
+      file_.read(0, std::min<std::uint64_t>(file_.size(), bag_magic.size()), "magic");
+  if (start.view() != bag_magic) {
     file_.fail(0, in_quotes(start.view()),
                "'#ROSBAG V2.0'; 'rosbag fix' converts bags of earlier versions");
   }
@@ -148,8 +152,8 @@ void BagRecording::require_version() const {
 
 /// @return false if the bag has none, as its recording was cut off
 bool BagRecording::read_index() {
-  const Bytes bytes = header_at(magic.size());
-  const Fields fields(ByteReader({file_, magic.size() + 4}, bytes.view()));
+  const Bytes bytes = header_at(bag_magic.size());
+  const Fields fields(ByteReader({file_, bag_magic.size() + 4}, bytes.view()));
   fields.require_op(Op::bag);
   if (fields.has("encryptor") && !fields.text("encryptor").empty()) {
     file_.refuse("is encrypted by " + in_quotes(fields.text("encryptor")) +
@@ -178,7 +182,7 @@ void BagRecording::read_records(std::uint64_t start, const Fields& bag) {
   const std::uint32_t connections = bag.u32("conn_count");
   const std::uint32_t chunks = bag.u32("chunk_count");
   if (file_.size() - start > most_index_bytes) {
-    file_.fail(magic.size(), "an index at byte " + std::to_string(start),
+    file_.fail(bag_magic.size(), "an index at byte " + std::to_string(start),
                "one of at most " + std::to_string(most_index_bytes) + " bytes in the " +
                    std::to_string(file_.size()) + " of the file");
   }
@@ -196,7 +200,7 @@ void BagRecording::read_records(std::uint64_t start, const Fields& bag) {
 /// A bag without an index from front to back: chunks and what connects their messages with topics.
 /// The last record of one that was cut off is just not whole.
 void BagRecording::scan() {
-  for (std::uint64_t offset = magic.size(); offset < file_.size();) {
+  for (std::uint64_t offset = bag_magic.size(); offset < file_.size();) {
     try {
       offset = scan_record(offset);
     } catch (const Unsupported&) {
@@ -303,7 +307,7 @@ void BagRecording::read_chunk_info(ByteReader& records, std::uint64_t end) {
   chunk.offset = fields.number("chunk_pos", 8);
   chunk.start = time_field(fields, "start_time");
   chunk.end = time_field(fields, "end_time");
-  if (chunk.offset < magic.size() || chunk.offset >= end) {
+  if (chunk.offset < bag_magic.size() || chunk.offset >= end) {
     fields.fail("a chunk at byte " + std::to_string(chunk.offset),
                 "one before the index at byte " + std::to_string(end));
   }
@@ -333,13 +337,13 @@ void BagRecording::bound_chunks(std::uint64_t end) {
   }
 }
 
-ChunkHead BagRecording::head_of(const RecordedChunk& chunk) const {
+BagChunkHead BagRecording::head_of(const RecordedChunk& chunk) const {
   const Bytes bytes = header_at(chunk.offset);
   const Fields fields(ByteReader({file_, chunk.offset + 4}, bytes.view()));
   fields.require_op(Op::chunk);
   const std::uint64_t after = chunk.offset + 4 + bytes.size();
   const Bytes length = file_.read(after, 4, "length of a chunk");
-  ChunkHead head;
+  BagChunkHead head;
   head.compression = fields.text("compression");
   head.uncompressed = fields.u32("size");
   head.length = ByteReader({file_, after}, length.view()).u32("length of a chunk");
@@ -355,7 +359,7 @@ ChunkHead BagRecording::head_of(const RecordedChunk& chunk) const {
 void BagRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
                         std::vector<MessagePlace>& places) const {
   const RecordedChunk& listed = chunks_[chunk];
-  const ChunkHead head = head_of(listed);
+  const BagChunkHead head = head_of(listed);
   const std::uint64_t start = head.data + head.length;
   const std::uint64_t length = listed.offset + listed.length - start;
   if (length > most_index_bytes) {
@@ -382,7 +386,7 @@ void BagRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
 }
 
 Bytes BagRecording::load(const RecordedChunk& chunk) const {
-  const ChunkHead head = head_of(chunk);
+  const BagChunkHead head = head_of(chunk);
   Bytes bytes = file_.read(head.data, head.length, "a chunk");
   if (head.compression == "lz4" || head.compression == "bz2") {
     const auto compression = head.compression == "lz4" ? Compression::lz4 : Compression::bz2;

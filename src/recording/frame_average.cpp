@@ -3,14 +3,13 @@
 #include "recording/frame_average.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // Ours.
 constexpr double ray_tolerance = 0.002;    // [rad]
 constexpr double most_off_rays = 0.05;     // of the pixels seen twice
@@ -35,7 +34,7 @@ bool FrameAverage::add(const std::vector<Eigen::Vector3d>& points) {
     const double range = points[i].norm();
     const bool is_seen = std::isfinite(range) && range > 0.0;
     if (is_seen && rays_[i].isZero(0.0)) rays_[i] = points[i] / range;
-    ranges.push_back(static_cast<float>(is_seen ? range : unknown));
+    ranges.push_back(static_cast<float>(is_seen ? range : nan));
   }
   return true;
 }
@@ -53,9 +52,9 @@ AveragedFrames FrameAverage::result() const {
     const bool is_known =
         mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames_.size();
     average.points.push_back(is_known ? Eigen::Vector3d(mean.value * rays_[pixel])
-                                      : Eigen::Vector3d::Constant(unknown));
+                                      : Eigen::Vector3d::Constant(nan));
     const bool has_variance = is_known && mean.count > 1;
-    average.variance.push_back(has_variance ? mean.variance / mean.count : unknown);
+    average.variance.push_back(has_variance ? mean.variance / mean.count : nan);
     if (has_variance) deviations.push_back(std::sqrt(mean.variance));
   }
   if (!deviations.empty()) average.frame_sd = mean_median(deviations);

@@ -14,7 +14,7 @@
 namespace excavplan {
 namespace {
 
-constexpr std::string_view magic = "\x89MCAP0\r\n";
+constexpr std::string_view mcap_magic = "\x89MCAP0\r\n";
 constexpr std::uint64_t record_head = 9;                 // opcode and length [byte]
 constexpr std::uint64_t footer_size = record_head + 20;  // [byte]
 constexpr std::uint64_t message_head = 22;               // before the data of a message [byte]
@@ -51,7 +51,7 @@ Record next_record(ByteReader& reader) {
 }
 
 /// The fields of a Chunk record that come before its data.
-struct ChunkHead {
+struct McapChunkHead {
   TimeRange times;
   std::uint64_t uncompressed = 0;  // [byte]
   std::uint32_t crc = 0;           // 0: none
@@ -113,8 +113,8 @@ class McapRecording : public ChunkedContainer {
   void take_channels_of_damaged(std::uint64_t offset, std::uint64_t length);
 
   ByteReader reader_at(const MessagePlace& place);
-  ChunkHead head_of(std::uint64_t offset, std::uint64_t length) const;
-  Bytes unpack(std::uint64_t offset, const ChunkHead& head) const;
+  McapChunkHead head_of(std::uint64_t offset, std::uint64_t length) const;
+  Bytes unpack(std::uint64_t offset, const McapChunkHead& head) const;
   Bytes load(std::uint64_t offset, std::uint64_t length) const;
   ByteReader reader(std::uint64_t offset, const Bytes& bytes) const {
     return {{file_, offset}, bytes.view()};
@@ -132,16 +132,18 @@ class McapRecording : public ChunkedContainer {
 };
 
 std::uint64_t McapRecording::read_header() {
-  const Bytes start = file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size()), "magic");
-  if (start.view() != magic) {
+  const Bytes start =
+      file_.read(0, std::min<std::uint64_t>(file_.size(), mcap_magic.size()), "magic");
+  if (start.view() != mcap_magic) {
     file_.fail(0, in_quotes(start.view()), "the magic of MCAP version 0, '\\x89MCAP0\\r\\n'");
   }
-  std::uint64_t end = magic.size();
+  std::uint64_t end = mcap_magic.size();
   skipped_.guard(no_time, [&] {
     end += record_head + content_length(end, file_.size(), Opcode::header, "header");
   });
-  is_closed_ = file_.size() - end >= footer_size + magic.size() &&
-               file_.read(file_.size() - magic.size(), magic.size(), "magic").view() == magic;
+  is_closed_ =
+      file_.size() - end >= footer_size + mcap_magic.size() &&
+      file_.read(file_.size() - mcap_magic.size(), mcap_magic.size(), "magic").view() == mcap_magic;
   return end;
 }
 
@@ -166,7 +168,7 @@ std::uint64_t McapRecording::content_length(std::uint64_t offset, std::uint64_t 
 /// counts or indexes, all of which are optional
 bool McapRecording::read_summary(std::uint64_t data_start) {
   if (!is_closed_) return false;
-  const std::uint64_t footer_start = file_.size() - magic.size() - footer_size;
+  const std::uint64_t footer_start = file_.size() - mcap_magic.size() - footer_size;
   const Bytes bytes = file_.read(footer_start, footer_size, "footer");
   content_length(footer_start, footer_start + footer_size, Opcode::footer, "footer");
   ByteReader fields = reader(footer_start, bytes);
@@ -350,11 +352,11 @@ void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
   }
 }
 
-ChunkHead McapRecording::head_of(std::uint64_t offset, std::uint64_t length) const {
+McapChunkHead McapRecording::head_of(std::uint64_t offset, std::uint64_t length) const {
   const std::uint64_t count = std::min(length, chunk_head + longest_compression_name + 8);
   const Bytes bytes = file_.read(offset, count, "chunk");
   ByteReader fields = reader(offset, bytes);
-  ChunkHead head;
+  McapChunkHead head;
   head.times.from = fields.nanoseconds_at_most("start of a chunk");
   head.times.to = fields.nanoseconds_at_most("end of a chunk");
   head.uncompressed = fields.u64("size of a chunk");
@@ -376,7 +378,7 @@ Bytes McapRecording::load(const RecordedChunk& chunk) const {
               content_length(chunk.offset, chunk.offset + chunk.length, Opcode::chunk, "chunk"));
 }
 
-Bytes McapRecording::unpack(std::uint64_t offset, const ChunkHead& head) const {
+Bytes McapRecording::unpack(std::uint64_t offset, const McapChunkHead& head) const {
   Bytes bytes = file_.read(head.data, head.length, "a chunk");
   const std::string place = "byte " + std::to_string(head.data);
   if (head.compression == "lz4" || head.compression == "zstd") {
@@ -392,7 +394,7 @@ Bytes McapRecording::unpack(std::uint64_t offset, const ChunkHead& head) const {
 }
 
 Bytes McapRecording::load(std::uint64_t offset, std::uint64_t length) const {
-  const ChunkHead head = head_of(offset, length);
+  const McapChunkHead head = head_of(offset, length);
   Bytes bytes = unpack(offset, head);
   if (head.crc != 0 && crc32(bytes.view()) != head.crc) {
     file_.fail(offset, "a chunk of CRC " + std::to_string(crc32(bytes.view())),
@@ -435,7 +437,7 @@ std::string_view McapRecording::message_at(const MessagePlace& place) {
 /// Reads what is whole, and looks for the next chunk behind what is no record. The end of a file
 /// that is not complete is just missing.
 void McapRecording::scan(std::uint64_t data_start) {
-  const std::uint64_t end = file_.size() - (is_closed_ ? magic.size() + footer_size : 0);
+  const std::uint64_t end = file_.size() - (is_closed_ ? mcap_magic.size() + footer_size : 0);
   for (std::uint64_t offset = data_start; end - offset >= record_head;) {
     const Bytes bytes = file_.read(offset, record_head, "record");
     ByteReader head = reader(offset, bytes);
@@ -520,7 +522,7 @@ std::optional<std::uint64_t> McapRecording::scan_endless_chunk(std::uint64_t off
                                                                std::uint64_t end) {
   try {
     const std::uint64_t content = offset + record_head;
-    const ChunkHead head = head_of(content, end - content);
+    const McapChunkHead head = head_of(content, end - content);
     scan_chunk(offset, head.data + head.length - content, true);
     return head.data + head.length;
   } catch (const Unsupported&) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,6 +15,7 @@
 #include <excavplan/scans/depth_intrinsics.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "recording/frame_average.hpp"
 #include "recording/recorded_messages.hpp"
@@ -24,7 +24,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // Ours.
 constexpr std::int64_t transforms_about = one_second;         // before and after the messages, or
 constexpr std::int64_t transforms_farther = 10 * one_second;  // where that does not do
@@ -184,8 +183,7 @@ std::vector<Eigen::Vector3d> points_of_depths(const DepthMessage& image, const P
       const double z = image.depths[points.size()];
       const double x = (static_cast<double>(column) - pinhole.cx) / pinhole.fx;
       const bool is_seen = z >= limits.min_depth && z <= limits.max_depth;
-      points.push_back(is_seen ? Eigen::Vector3d(x * z, y * z, z)
-                               : Eigen::Vector3d::Constant(unknown));
+      points.push_back(is_seen ? Eigen::Vector3d(x * z, y * z, z) : Eigen::Vector3d::Constant(nan));
     }
   }
   return points;
@@ -580,7 +578,7 @@ RecordingContents describe_recording(RecordingFile& recording) {
   RecordingContents contents;
   contents.start = seconds_of(recording.start());
   for (const RecordedTopic& topic : recording.topics()) {
-    RecordingTopic entry = {topic.name, topic.type, topic.messages, unknown, unknown, {}, false};
+    RecordingTopic entry = {topic.name, topic.type, topic.messages, nan, nan, {}, false};
     entry.is_scan = holds_scans(topic);
     if (topic.messages > 0) {
       entry.first = seconds_of(time_between(recording.start(), topic.first));

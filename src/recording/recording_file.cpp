@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view older_bag_magic = "#ROSRECORD V";
-constexpr std::size_t longest_name = 1000;  // of a topic or type; ours [byte]
+constexpr std::size_t longest_word = 1000;  // of a topic or type; ours [byte]
 constexpr std::size_t most_files = 500;     // of a folder; ours
 
 bool starts_with(std::string_view text, std::string_view start) {
@@ -171,9 +171,9 @@ void Recording::add(const std::string& file, std::unique_ptr<Container> containe
 
 std::size_t Recording::add_topic(const std::string& file, const RecordedTopic& topic) {
   for (const std::string& name : {topic.name, topic.type}) {
-    if (name.size() <= longest_name && safe_text(name, longest_name) == name) continue;
+    if (name.size() <= longest_word && safe_text(name, longest_word) == name) continue;
     fail_at(file, "a topic's name or type", in_quotes(name),
-            "at most " + std::to_string(longest_name) + " bytes without control characters");
+            "at most " + std::to_string(longest_word) + " bytes without control characters");
   }
   const auto [entry, is_new] = topic_of_name_.try_emplace(topic.name, topics_.size());
   if (is_new) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string_view>
 
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/scalar.hpp"
 #include "base/text.hpp"
 #include "images/depth_png.hpp"
@@ -16,7 +16,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t longest_name = 4096;  // of frames, fields, joints; ours [byte]
 
 /// The fields of a message from front to back.
@@ -166,7 +165,7 @@ void each_element(const Grid& grid, std::size_t offset, bool swapped, Put put) {
 
 void forget_empty_returns(std::vector<Eigen::Vector3d>& points) {
   for (Eigen::Vector3d& point : points) {
-    if (point.x() == 0.0 && point.y() == 0.0 && point.z() == 0.0) point.setConstant(unknown);
+    if (point.x() == 0.0 && point.y() == 0.0 && point.z() == 0.0) point.setConstant(nan);
   }
 }
 
@@ -295,7 +294,7 @@ bool is_livox(const RecordedMessage& message) {
 // ---- Images -----------------------------------------------------------------------------------
 
 float depth_or_unknown(float depth) {
-  return std::isfinite(depth) && depth > 0.0F ? depth : static_cast<float>(unknown);
+  return std::isfinite(depth) && depth > 0.0F ? depth : static_cast<float>(nan);
 }
 
 template <typename T>

@@ -29,7 +29,7 @@
 namespace excavplan {
 namespace {
 
-constexpr int longest_name = 4096;            // of a topic or type, and of other texts; ours [byte]
+constexpr int longest_text = 4096;            // of a topic or type, and of other texts; ours [byte]
 constexpr std::size_t most_topics = 1 << 14;  // ours
 constexpr std::size_t most_rows = 1 << 23;    // at once; ours
 constexpr int steps_between_checks = 1000;    // of SQLite's virtual machine
@@ -289,10 +289,10 @@ std::int64_t SqliteRecording::integer(sqlite3_stmt* statement, int column,
 std::string SqliteRecording::text(sqlite3_stmt* statement, int column, const std::string& name) {
   const char* const found = characters(statement, column);
   const int size = sqlite3_column_bytes(statement, column);
-  if (found == nullptr || size > longest_name) {
+  if (found == nullptr || size > longest_text) {
     fail_at(path_, "table topics, column " + name,
             found == nullptr ? "nothing" : std::to_string(size) + " bytes",
-            "a text of at most " + std::to_string(longest_name) + " bytes");
+            "a text of at most " + std::to_string(longest_text) + " bytes");
   }
   return {found, static_cast<std::size_t>(size)};
 }

@@ -36,12 +36,6 @@ LiveSettings live_settings(const DigCycleSettings& settings) {
           settings.oldest_joints};
 }
 
-/// A dig that was planned, and for which density.
-struct DigForetold {
-  PlannedDig dig;
-  double density_percent;
-};
-
 }  // namespace
 
 const char* name(CycleStage stage) {
@@ -50,6 +44,12 @@ const char* name(CycleStage stage) {
 }
 
 struct DigCycleSession::State {
+  /// A dig that was planned, and for which density.
+  struct DigForetold {
+    PlannedDig dig;
+    double density_percent;
+  };
+
   explicit State(DigCycleSettings given)
       : settings(std::move(given)), robot(live_settings(settings)), density(settings.density) {
     if (!settings.site.empty()) site.emplace(settings);
@@ -485,7 +485,8 @@ CyclePlan DigCycleSession::plan(Time time) {
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });
   state.planned.reset();
-  if (answer.plan.dig) state.planned = DigForetold{*answer.plan.dig, answer.density.percent};
+  if (answer.plan.dig)
+    state.planned = DigCycleSession::State::DigForetold{*answer.plan.dig, answer.density.percent};
   state.plan_id = answer.stamp ? answer.stamp->id : "";
   return answer;
 }

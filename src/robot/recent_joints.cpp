@@ -10,8 +10,8 @@
 namespace excavplan {
 namespace {
 
-constexpr std::int64_t kept = 10'000'000'000;  // [ns]
-constexpr std::size_t most_samples = 20000;    // ours: 2 kHz
+constexpr std::int64_t joints_kept = 10'000'000'000;  // [ns]
+constexpr std::size_t most_samples = 20000;           // ours: 2 kHz
 
 bool earlier(const JointSample& sample, std::int64_t time) { return sample.time < time; }
 
@@ -19,7 +19,7 @@ bool earlier(const JointSample& sample, std::int64_t time) { return sample.time 
 
 void RecentJoints::add(const std::string& name, const JointSample& sample) {
   std::deque<JointSample>& samples = joints_[name];
-  if (!samples.empty() && sample.time < later(samples.back().time, -kept)) samples.clear();
+  if (!samples.empty() && sample.time < later(samples.back().time, -joints_kept)) samples.clear();
   auto place = samples.end();
   while (place != samples.begin() && sample.time < std::prev(place)->time) --place;
   if (place != samples.begin() && std::prev(place)->time == sample.time) {
@@ -28,7 +28,7 @@ void RecentJoints::add(const std::string& name, const JointSample& sample) {
     samples.insert(place, sample);
   }
   while (samples.size() > most_samples ||
-         samples.front().time < later(samples.back().time, -kept)) {
+         samples.front().time < later(samples.back().time, -joints_kept)) {
     samples.pop_front();
   }
 }

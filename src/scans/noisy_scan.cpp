@@ -17,7 +17,7 @@ namespace {
 using Eigen::ArrayXXd;
 using Eigen::Vector3d;
 
-constexpr double telling = 3.0;  // deviations between what is known and a scan; ours
+constexpr double telling_sds = 3.0;  // deviations between what is known and a scan; ours
 
 /// Calls visit(place, deviation of a height at 1 m^power) for the points of clouds that know their
 /// sensor.
@@ -89,7 +89,7 @@ void fuse(const ScanHeights& scan, Terrain& ground, ArrayXXd& sd) {
     if (std::isnan(known_sd)) known_sd = seen_sd;
     const double off = z - bank - ground.loose(at.row, at.col);
     const double variance = known_sd * known_sd + seen_sd * seen_sd;
-    const bool is_other = std::abs(off) > telling * std::sqrt(variance);
+    const bool is_other = std::abs(off) > telling_sds * std::sqrt(variance);
     const double weight = is_other || !(variance > 0.0) ? 1.0 : known_sd * known_sd / variance;
     shift(ground, at, weight * off);
     known_sd = is_other ? seen_sd : std::sqrt(1.0 - weight) * known_sd;

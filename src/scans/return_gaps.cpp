@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {
@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double steepest = 1.0;                    // slope that goes on across a gap; ours
 constexpr double widest = 0.25;                     // ours [m]
 constexpr double alike = 2.0 * between_returns_sd;  // heights of one surface differ by less; ours

@@ -29,9 +29,9 @@ constexpr double least_relief = 0.2;  // that shows a shift: above or below the 
 constexpr double furthest = 1.5, shift_step = 0.1;                      // [m]
 constexpr double most_turn = 8.0 * pi / 180.0, turn_step = pi / 180.0;  // [rad]
 constexpr double well = 0.6, better = 0.25;  // share of relief that agrees, and by which more does
-constexpr std::size_t fewest_points = 40, most_points = 1500;  // of relief
+constexpr std::size_t fewest_of_relief = 40, most_points = 1500;  // of relief
 
-struct Motion {
+struct ShiftAndTurn {
   Vector2d shift = Vector2d::Zero();
   double turn = 0.0;
 };
@@ -81,12 +81,12 @@ class Comparison {
   }
 
   /// The motion that brings the relief together best, if it does much better than none.
-  std::optional<Motion> motion() const {
-    if (relief_.size() < fewest_points) return std::nullopt;
+  std::optional<ShiftAndTurn> motion() const {
+    if (relief_.size() < fewest_of_relief) return std::nullopt;
     const double still = agreement(Eigen::Matrix2d::Identity(), Vector2d::Zero());
     if (still >= well) return std::nullopt;
     double most = std::max(well, still + better);
-    std::optional<Motion> best;
+    std::optional<ShiftAndTurn> best;
     for (double turn = -most_turn; turn <= most_turn + 1e-9; turn += turn_step) {
       const Eigen::Matrix2d turned = Eigen::Rotation2Dd(turn).toRotationMatrix();
       for (double x = -furthest; x <= furthest + 1e-9; x += shift_step) {
@@ -94,7 +94,7 @@ class Comparison {
           const double now = agreement(turned, {x, y});
           if (now <= most) continue;
           most = now;
-          best = Motion{{x, y}, turn};
+          best = ShiftAndTurn{{x, y}, turn};
         }
       }
     }

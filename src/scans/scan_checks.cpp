@@ -26,7 +26,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double degree = pi / 180.0;
 constexpr const char* give_frames =
     "let `level` find the ground, or give the transform into a frame with z up by `frame`, or "
     "`before_frame` and `after_frame`";

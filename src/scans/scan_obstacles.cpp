@@ -25,7 +25,7 @@ constexpr double around = 3.0;         // the map, where the shape of things is 
 constexpr double hidden = 0.3;         // behind a face: as wide as the gaps that are filled [m]
 constexpr double level = 0.15;         // of returns that are one level of a face [m]
 constexpr double next_ray = 1.2;       // times the distance of two levels: to the next above
-constexpr double most_above = 1.0;     // [m]
+constexpr double highest_step = 1.0;   // [m]
 constexpr double low = 0.3;            // above the ground: what is below is the ground [m]
 constexpr double largest_cell = 0.25;  // [m]
 constexpr double wire_width = 0.1;     // to both sides of the line of a wire [m]
@@ -78,7 +78,7 @@ class ObstacleCells {
     const ArrayXXd& z = highest_.z;
     const CellMask seen = found_ && z > nothing;
     const ArrayXXd next = highest_within(below_, 1);
-    const ArrayXXd above = (next_ray * (top_ - next)).min(most_above);
+    const ArrayXXd above = (next_ray * (top_ - next)).min(highest_step);
     const CellMask hangs = hanging(next);
     Layers all;
     all.tops = widened(seen.select(z + above, nothing));

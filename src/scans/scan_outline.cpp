@@ -11,6 +11,7 @@
 
 #include <excavplan/scans/scan_surface.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/parallel.hpp"
 #include "clouds/cloud_summary.hpp"
 #include "clouds/stream_sample.hpp"
@@ -18,8 +19,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Direction of least scatter of the points in a box, z >= 0.
 Eigen::Vector3d normal_of(const Cloud& cloud, const Eigen::AlignedBox3d& box) {
@@ -273,7 +272,7 @@ ScanOutline CloudOutline::result() const {
   constexpr double nearest_seen = 0.1;    // ours, of a depth camera [m]
   constexpr double farthest_seen = 20.0;  // likewise
   ScanOutline outline = outline_;
-  outline.density = unknown;
+  outline.density = nan;
   Cloud cloud;
   for (const Eigen::Vector3d& point : sample_.values()) {
     if (point.allFinite()) cloud.points.push_back(point);

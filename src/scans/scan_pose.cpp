@@ -33,9 +33,9 @@ constexpr double least_height = 0.05;  // [m]; nearer the plane goes through the
 constexpr double steep_look = 0.9962;  // cosine of 5 deg
 constexpr double upright = 0.7071;     // cosine of 45 deg
 constexpr int most_rounds = 20;
-constexpr double thin = 1e-3;  // points whose spread across their line is less lie on it [-]
+constexpr double thin_spread = 1e-3;  // points whose spread across their line is less lie on it [-]
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_pose(const std::string& what) {
   throw Error(ErrorKind::bad_input, "pose of a scan: " + what);
 }
 
@@ -139,8 +139,8 @@ Ground find_ground(const std::vector<Eigen::Vector3d>& points, const Plane& star
     }
     ground.share = static_cast<double>(away.size()) / static_cast<double>(points.size());
     if (ground.share < least_share) {
-      refuse("only " + number_text(std::round(1000.0 * ground.share) / 10.0) +
-             " % of its points lie on one plane, less than 10 %: no ground plane to level it");
+      refuse_pose("only " + number_text(std::round(1000.0 * ground.share) / 10.0) +
+                  " % of its points lie on one plane, less than 10 %: no ground plane to level it");
     }
     ground.sd = robust_sd(away);
     width = std::max(within * ground.sd, 0.1 * plane_width * median_range(points));
@@ -178,8 +178,8 @@ Ground ground_below(const std::vector<Eigen::Vector3d>& points, const Plane& sta
   Plane& plane = ground.plane;
   if (plane.offset < 0.0) plane = {-plane.normal, -plane.offset};
   if (plane.offset < least_height) {
-    refuse("its largest plane is " + readable(plane.offset) +
-           " m from the sensor, less than 0.05 m: it is not the ground");
+    refuse_pose("its largest plane is " + readable(plane.offset) +
+                " m from the sensor, less than 0.05 m: it is not the ground");
   }
   return ground;
 }
@@ -187,21 +187,21 @@ Ground ground_below(const std::vector<Eigen::Vector3d>& points, const Plane& sta
 void check(const std::vector<Eigen::Vector3d>& in_scan,
            const std::vector<Eigen::Vector3d>& in_site) {
   if (in_scan.size() != in_site.size()) {
-    refuse(std::to_string(in_scan.size()) + " points of the scan, but " +
-           std::to_string(in_site.size()) + " known places; each point needs one");
+    refuse_pose(std::to_string(in_scan.size()) + " points of the scan, but " +
+                std::to_string(in_site.size()) + " known places; each point needs one");
   }
   if (in_scan.size() < 3) {
-    refuse(std::to_string(in_scan.size()) + " known points, must be 3 or more");
+    refuse_pose(std::to_string(in_scan.size()) + " known points, must be 3 or more");
   }
   for (std::size_t i = 0; i < in_scan.size(); ++i) {
     if (!in_scan[i].allFinite() || !in_site[i].allFinite()) {
-      refuse("known point " + std::to_string(i + 1) + " has a coordinate that is not finite");
+      refuse_pose("known point " + std::to_string(i + 1) + " has a coordinate that is not finite");
     }
     const double farthest =
         std::max(in_scan[i].cwiseAbs().maxCoeff(), in_site[i].cwiseAbs().maxCoeff());
     if (farthest > 1e9) {
-      refuse("known point " + std::to_string(i + 1) + " is " + number_text(farthest) +
-             " m from the origin, must be within 1e9 m");
+      refuse_pose("known point " + std::to_string(i + 1) + " is " + number_text(farthest) +
+                  " m from the origin, must be within 1e9 m");
     }
   }
 }
@@ -224,8 +224,9 @@ void check_lengths(double in_scan, double in_site) {
   constexpr double most = 1.1;  // ours
   const double factor = in_site / in_scan;
   if (factor <= most && factor >= 1.0 / most) return;
-  refuse("the known points are " + readable(factor) +
-         " times as far from each other in the site as in the scan: one of them is in other units");
+  refuse_pose(
+      "the known points are " + readable(factor) +
+      " times as far from each other in the site as in the scan: one of them is in other units");
 }
 
 /// Points that no motion brings together have others' places.
@@ -233,11 +234,12 @@ void check_fit(const PointPose& pose, double spread) {
   constexpr double most = 0.1;  // ours: of the distance from their middle (rms)
   if (pose.rms <= most * spread) return;
   const auto worst = std::max_element(pose.residuals.begin(), pose.residuals.end());
-  refuse("the known points come to lie " + readable(pose.rms, 2) +
-         " m (rms) from their places, more than a tenth of their distance from their middle, " +
-         readable(spread, 2) + " m; the worst is point " +
-         std::to_string(worst - pose.residuals.begin() + 1) + ", " + readable(*worst, 2) +
-         " m off: points are exchanged, mirrored or wrong");
+  refuse_pose(
+      "the known points come to lie " + readable(pose.rms, 2) +
+      " m (rms) from their places, more than a tenth of their distance from their middle, " +
+      readable(spread, 2) + " m; the worst is point " +
+      std::to_string(worst - pose.residuals.begin() + 1) + ", " + readable(*worst, 2) +
+      " m off: points are exchanged, mirrored or wrong");
 }
 
 /// Which axis of the sensor shows ahead.
@@ -253,10 +255,10 @@ LevelPose level(const std::vector<Eigen::Vector3d>& scan,
                 const std::optional<Eigen::Vector3d>& told, const Eigen::Vector3d& origin,
                 std::uint64_t seed) {
   const Eigen::Vector3d place = told.value_or(origin);
-  if (!place.allFinite()) refuse("the place of its sensor is not finite");
+  if (!place.allFinite()) refuse_pose("the place of its sensor is not finite");
   const std::vector<Eigen::Vector3d> points = seen_from(place, scan);
   if (points.size() < fewest_points) {
-    refuse(std::to_string(points.size()) + " finite points, must be 100 or more to level it");
+    refuse_pose(std::to_string(points.size()) + " finite points, must be 100 or more to level it");
   }
   const Plane start = most_common_plane(points, plane_width * median_range(points), Random(seed));
   const auto at_origin = told ? std::nullopt : ground_at_origin(points, start);
@@ -318,8 +320,8 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
     products += (in_site[i] - site_mean) * (in_scan[i] - scan_mean).transpose();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()(1) > thin * thin * svd.singularValues()(0))) {
-    refuse("the known points lie on one line, so the rotation about it is undetermined");
+  if (!(svd.singularValues()(1) > thin_spread * thin_spread * svd.singularValues()(0))) {
+    refuse_pose("the known points lie on one line, so the rotation about it is undetermined");
   }
   const double spread = spread_about(site_mean, in_site);
   check_lengths(spread_about(scan_mean, in_scan), spread);

@@ -28,8 +28,8 @@ namespace {
 // Gaps in a scan up to so wide are filled [m], and [cells]; ours.
 constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;
-constexpr std::size_t fewest_points = 10;  // that make a ground; ours
-constexpr double narrowest = 1e-3;         // that makes a ground; ours [m]
+constexpr std::size_t fewest_of_ground = 10;  // that make a ground; ours
+constexpr double narrowest = 1e-3;            // that makes a ground; ours [m]
 
 // Of ground that nothing may hit [m]; ours: a wall may stand between points that are further apart.
 constexpr double motion_cell = 0.25, motion_farthest = 0.5;
@@ -87,7 +87,7 @@ void require_heights(const Scan& scan, const HeightMap& map) {
 }
 
 void require_points(const Scan& scan, std::size_t points, const Rectangle& extent) {
-  if (points >= fewest_points) return;
+  if (points >= fewest_of_ground) return;
   const ScanOutline all = outline(scan);
   const auto unit =
       all.extent ? doubt_of_extent(*all.extent, all.density, scan.unit) : std::nullopt;

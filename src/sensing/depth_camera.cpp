@@ -14,12 +14,12 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "ground/map_check.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double edge_share = 0.02;  // ours: neighbours that differ by more lie across an edge [-]
 
 // Ours: beyond them no sensor is.

@@ -9,8 +9,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double degree = pi / 180.0;
-
 /// Intel RealSense D435i at 848 x 480 pixels. Field of view and f B (focal length times baseline):
 /// data sheet. A depth errs by the error of its disparity times z^2 / (f B); 0.05 px of noise and
 /// 0.06 px of pattern, 3 px wide, and half of all pixels at edges flying: docs/methods.md#sensors.

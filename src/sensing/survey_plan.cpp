@@ -11,7 +11,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double degree = pi / 180.0;
 constexpr double margin = 0.10;       // by which zones are wider than what changed [m]
 constexpr double scans = 2.0;         // before and after
 constexpr double least_stable = 0.1;  // of what is seen: stable ground that is always left [-]
@@ -20,7 +19,7 @@ constexpr double least_stable = 0.1;  // of what is seen: stable ground that is 
 // m in simulated surveys).
 constexpr double datum_cost = 1.5;
 constexpr double registration_cost = 2.5;
-constexpr double farthest = 1000.0;  // [m]
+constexpr double farthest_place = 1000.0;  // [m]
 constexpr int most_frames = 1000;
 
 void require(bool holds, const char* name, double value, const char* rule) {
@@ -299,11 +298,11 @@ SurveyNeeds survey_needs(const SurveyPlan& plan, double density_sd_percent) {
     return forecast_of(at_range(plan, range)).density_sd_percent;
   };
   SurveyNeeds needs;
-  needs.nearest_range = last_that(nearest, farthest, [&](double range) {
+  needs.nearest_range = last_that(nearest, farthest_place, [&](double range) {
     return !fits(view_of(at_range(plan, range)), shapes);
   });
   if (sd_at(needs.nearest_range) <= density_sd_percent) {
-    needs.range = last_that(needs.nearest_range, farthest,
+    needs.range = last_that(needs.nearest_range, farthest_place,
                             [&](double range) { return sd_at(range) <= density_sd_percent; });
   }
   SurveyPlan still = plan;

@@ -11,6 +11,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/plan_geometry.hpp"
 #include "earth/ground_window.hpp"
 #include "earth/slump.hpp"
@@ -24,7 +25,6 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double room_along = 1.5;   // of a path, for the pile ahead and soil that slides; ours [m]
 constexpr double room_beside = 1.5;  // of the bucket, likewise [m]
 constexpr double unchanged = 1e-12;  // less is no change of a layer [m]

@@ -29,7 +29,7 @@ using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
 constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
-constexpr double room_around = 0.5;      // of the window around the path at first [m]
+constexpr double first_room = 0.5;       // of the window around the path at first [m]
 constexpr double rounding = 1e-15;       // of a volume [m^3]
 constexpr double spill_error = 1e-8;     // of the soil that has no room in the bucket [m^3]
 
@@ -74,7 +74,7 @@ class Dig {
     const Rectangle strip = swept_strip(model_.machine, path);
     const CellBlock cells = {swath_.first_row(), swath_.end_row(), swath_.column(strip.x_min),
                              swath_.column(strip.x_max) + 1};
-    const auto room = static_cast<Index>(std::ceil(room_around / terrain.bank.cell_size));
+    const auto room = static_cast<Index>(std::ceil(first_room / terrain.bank.cell_size));
     return cells.widened(room, terrain.loose.rows(), terrain.loose.cols());
   }
 

@@ -17,8 +17,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double degree = pi / 180.0;
-
 constexpr double cone_half_angle = 15.0 * degree;  // of the standard cone (ASAE S313)
 constexpr double bearing_settlement = 0.1;  // of its width, at which a footing bears all; ours
 

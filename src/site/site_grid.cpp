@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <excavplan/site/site_settings.hpp>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double line_tolerance = 1e-6;  // of a cell; ours
 
 /// The layers of a site's ground but the surface's two, which are interpolated.

@@ -7,7 +7,7 @@
 namespace excavplan {
 namespace {
 
-constexpr const char* format = "excavplan-site";
+constexpr const char* manifest_format = "excavplan-site";
 
 nlohmann::ordered_json json_of(const StoredFile& file) {
   return {{"file", file.name}, {"checksum", file.digest}};
@@ -31,7 +31,7 @@ long long count_of(JsonObject& object, const char* key) {
 }  // namespace
 
 std::string manifest_text(const SiteManifest& manifest) {
-  nlohmann::ordered_json json = {{"format", format},
+  nlohmann::ordered_json json = {{"format", manifest_format},
                                  {"version", 1},
                                  {"soil", manifest.soil},
                                  {"machine", manifest.machine},
@@ -53,7 +53,7 @@ std::string manifest_text(const SiteManifest& manifest) {
 }
 
 SiteManifest manifest_of(const std::string& name, const std::string& content) {
-  JsonObject file = JsonObject::open_sealed(name, content, format);
+  JsonObject file = JsonObject::open_sealed(name, content, manifest_format);
   SiteManifest manifest;
   manifest.soil = file.text("soil");
   manifest.machine = file.text("machine");

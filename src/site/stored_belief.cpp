@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format = "excavplan-belief";
+constexpr const char* belief_format = "excavplan-belief";
 
 /// The settings by their names in a file.
 template <typename Settings>
@@ -136,7 +136,7 @@ BeliefSettings settings_in(JsonObject& file) {
 }  // namespace
 
 std::string belief_text(const DensityBelief& belief) {
-  Json json = {{"format", format}, {"version", 1}, {"settings", Json::object()}};
+  Json json = {{"format", belief_format}, {"version", 1}, {"settings", Json::object()}};
   for (const auto& [name, value] : rows_of(belief.settings())) json["settings"][name] = *value;
   if (belief.forgotten()) json["forgotten"] = json_of(*belief.forgotten());
   json["digs"] = Json::array();
@@ -145,7 +145,7 @@ std::string belief_text(const DensityBelief& belief) {
 }
 
 DensityBelief belief_of(const std::string& name, const std::string& content) {
-  JsonObject file = JsonObject::open_sealed(name, content, format);
+  JsonObject file = JsonObject::open_sealed(name, content, belief_format);
   const BeliefSettings settings = settings_in(file);
   std::optional<DigEvidence> forgotten;
   if (file.has("forgotten")) {

@@ -13,8 +13,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double degree = pi / 180.0;
-
 double cot(double angle) { return 1.0 / std::tan(angle); }
 
 constexpr double lowest_failure = 2.0 * degree;

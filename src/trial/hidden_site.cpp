@@ -19,7 +19,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double degree = pi / 180.0;
 constexpr double least_even = 10.0, most_even = 90.0;  // of a field without a gradient [%]
 
 JsonObject opened(const std::string& path) {

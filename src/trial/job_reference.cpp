@@ -12,13 +12,12 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "planning/front_load.hpp"
 #include "trial/scored_design.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Least work to part soil from the ground, per volume: a wedge without weight ahead of a smooth
 /// plate of the rake of the lip (Coulomb), over all planes of rupture [J/m^3].

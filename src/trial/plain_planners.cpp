@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <excavplan/planning/plan_dig.hpp>
@@ -12,6 +11,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
 #include "base/plan_geometry.hpp"
 #include "ground/grid_cells.hpp"
 #include "trial/dump_places.hpp"
@@ -22,7 +22,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double penetration = 0.25 * pi;       // of a layer [rad]
 constexpr double finishing_penetration = 0.35;  // of a pass along the floor [rad]
 constexpr double least_layer = 0.04;            // [m]

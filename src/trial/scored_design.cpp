@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <excavplan/design/cut_and_fill.hpp>
 
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {
@@ -15,7 +15,6 @@ using Eigen::ArrayXXd;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double whole = 1.0 - 1e-6;  // share of a cell
 
 }  // namespace

@@ -22,8 +22,6 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double degree = pi / 180.0;
-
 // Streams of a scan.
 constexpr std::uint64_t registration_stream = 1;
 constexpr std::uint64_t pattern_stream = 2;

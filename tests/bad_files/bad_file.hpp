@@ -16,6 +16,17 @@ enum class Expected {
   same,     ///< reads what the valid file says, or BadFile::said
   either    ///< what matters is that it does not crash, hang or take much
 };
+inline constexpr Expected refused = Expected::refused;
+inline constexpr Expected same = Expected::same;
+inline constexpr Expected either = Expected::either;
+
+/// `text` again and again.
+inline std::string times(std::size_t count, const std::string& text) {
+  std::string all;
+  all.reserve(count * text.size());
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
 
 /// A bad or odd file.
 struct BadFile {

@@ -17,8 +17,6 @@ namespace excavplan::test {
 namespace {
 
 using std::string;
-constexpr Expected refused = Expected::refused;
-constexpr Expected either = Expected::either;
 
 /// Numbers of 1 to 8 bytes over bytes anywhere: nothing, all, the ends of ranges.
 void add_overwritten(BadFiles& files, const string& valid, int count) {

@@ -13,10 +13,6 @@ namespace {
 
 using std::string;
 
-constexpr Expected refused = Expected::refused;
-constexpr Expected same = Expected::same;
-constexpr Expected either = Expected::either;
-
 const std::vector<Eigen::Vector3d>& four_points() {
   static const std::vector<Eigen::Vector3d> points = {
       {4.5, -0.25, -0.5}, {5.0, 0.75, -1.25}, {0.125, 0.0, 2.0}, {-3.0, 8.5, 0.0625}};
@@ -46,13 +42,6 @@ string as_rows(bool big_endian = false) {
     for (const double v : {p.x(), p.y(), p.z()}) bytes += raw(static_cast<T>(v), big_endian);
   }
   return bytes;
-}
-
-string times(std::size_t count, const string& text) {
-  string all;
-  all.reserve(count * text.size());
-  for (std::size_t i = 0; i < count; ++i) all += text;
-  return all;
 }
 
 // ---- PCD ----------------------------------------------------------------------------------------

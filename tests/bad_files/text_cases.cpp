@@ -12,16 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using std::string;
-constexpr Expected refused = Expected::refused;
-constexpr Expected same = Expected::same;
-constexpr Expected either = Expected::either;
-
-string times(std::size_t count, const string& text) {
-  string all;
-  all.reserve(count * text.size());
-  for (std::size_t i = 0; i < count; ++i) all += text;
-  return all;
-}
 
 string replaced(string text, const string& from, const string& to) {
   const std::size_t at = text.find(from);

@@ -139,7 +139,7 @@ std::string new_las() {
   return file.bytes();
 }
 
-const Points& four_points() {
+const Points& las_points() {
   static const Points points = {{1.0, 2.0, -0.5}, {1.25, 2.5, -0.25}, {4.5, -1.0, 0.0}, {0, 0, 0}};
   return points;
 }
@@ -192,8 +192,8 @@ const std::map<std::string, Maker>& makers() {
       {"mcap", [] { return recorded("scene_none.mcap"); }},
       {"bag", [] { return recorded("scene_none.bag"); }},
       {"db3", [] { return recorded("scene_zstd.db3"); }},
-      {"point_cloud2", [] { return message(cloud_bytes(1000000007, "lidar", four_points(), 2)); }},
-      {"livox", [] { return message(livox_bytes(1000000007, "lidar", four_points())); }},
+      {"point_cloud2", [] { return message(cloud_bytes(1000000007, "lidar", las_points(), 2)); }},
+      {"livox", [] { return message(livox_bytes(1000000007, "lidar", las_points())); }},
       {"image_message",
        [] {
          return message(depth_bytes(1000000007, "camera", 2, {500, 0, 1500, 2000}));

@@ -68,9 +68,9 @@ struct Reading {
   std::vector<ScanError> scans;
 };
 
-class Exact {
+class DenseBayes {
  public:
-  Exact(const BeliefSettings& s, std::vector<GroundPlace> places)
+  DenseBayes(const BeliefSettings& s, std::vector<GroundPlace> places)
       : places_(std::move(places)), count_(static_cast<Eigen::Index>(places_.size())) {
     prior_ = MatrixXd::Zero(count_ + 3, count_ + 3);
     for (Eigen::Index i = 0; i < count_; ++i) {
@@ -170,7 +170,7 @@ ExactAnswer exact_answer(const BeliefSettings& settings, const std::vector<DigEv
   for (const DigEvidence& dig : digs) {
     for (const BankPart& of_bank : dig.bank) places.push_back(of_bank.place);
   }
-  Exact exact(settings, places);
+  DenseBayes exact(settings, places);
   Eigen::Index first = own;
   for (const DigEvidence& dig : digs) {
     exact.add(dig, first);
@@ -470,7 +470,7 @@ TEST(Condensed, HasTheCovarianceOfTheWholeBankWithinOnePercent) {
     double sum = 0.0;
     for (const BankPart& one : a) {
       for (const BankPart& other : b) {
-        sum += one.volume * other.volume * Exact::covariance(field, one.place, other.place);
+        sum += one.volume * other.volume * DenseBayes::covariance(field, one.place, other.place);
       }
     }
     const auto volume = [](const std::vector<BankPart>& of) {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 #include "ground/grid_cells.hpp"
 
@@ -20,8 +20,6 @@ namespace excavplan {
 namespace {
 
 using test::Heap;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A survey of one area and what changed in it.
 struct Survey {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -14,13 +13,12 @@
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/scans/ground_update.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A trench of 2 m x 0.8 m through a layer of loose soil, 0.10 m thick over its half, 0.30 m deep
 /// in all; its soil lies 4 m away.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include <excavplan/change/volume_change.hpp>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "change/change_zones.hpp"
 #include "ground/grid_cells.hpp"
 
@@ -23,8 +23,6 @@ namespace {
 
 using Shape = std::function<double(double x, double y)>;
 
-constexpr double degree = pi / 180.0;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double cell_size = 0.05;
 constexpr int divisions = 5;  // points along a cell
 

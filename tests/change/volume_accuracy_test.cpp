@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,12 +13,11 @@
 #include <excavplan/change/bulking.hpp>
 #include "base/random.hpp"
 
+#include "base/non_finite.hpp"
 #include "support/measured_scene.hpp"
 
 namespace excavplan::scenes {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Errors of k over some surveys of one dig, and how often its 95 % interval held the truth.
 struct Score {

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +23,7 @@
 #include <excavplan/clouds/cloud.hpp>
 #include "base/random.hpp"
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
@@ -32,9 +32,6 @@ namespace {
 using std::string;
 using Points = std::vector<Eigen::Vector3d>;
 using test::error_about;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// A file that is gone when the test ends.
 class TempFile {
@@ -284,7 +281,7 @@ TEST(ReadCloud, TextInManyDialects) {
 }
 
 TEST(ReadCloud, PointsThatAreNotFiniteKeepTheirPlace) {
-  const Points points = {{nan, nan, nan}, {1.0, inf, -inf}};
+  const Points points = {{nan, nan, nan}, {1.0, infinity, -infinity}};
   const string rows = "nan NaN -nan\n1 inf -Infinity\n";
   expect_points(read_content(pcd_ascii.substr(0, pcd_ascii.find("1 2 3")) + rows), points);
   expect_points(read_content(ply_ascii.substr(0, ply_ascii.find("1 2 3")) + rows), points);
@@ -788,7 +785,7 @@ Cloud sample_cloud(double scale, bool with_nan) {
     cloud.points.push_back(scale *
                            Eigen::Vector3d(random.normal(), random.normal(), random.normal()));
   }
-  if (with_nan) cloud.points[7] = {nan, inf, -inf};
+  if (with_nan) cloud.points[7] = {nan, infinity, -infinity};
   cloud.width = 60;
   return cloud;
 }

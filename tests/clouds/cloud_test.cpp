@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,6 +12,8 @@
 
 #include "base/random.hpp"
 
+#include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
@@ -20,10 +21,7 @@ namespace {
 
 using test::error_of;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double degree = 3.14159265358979323846 / 180.0;
-
-using Surface = std::function<double(double x, double y)>;
+using HeightAt = std::function<double(double x, double y)>;
 
 Cloud cloud_of(std::vector<Eigen::Vector3d> points) {
   Cloud cloud;
@@ -33,7 +31,7 @@ Cloud cloud_of(std::vector<Eigen::Vector3d> points) {
 }
 
 /// Points spread evenly over the plan, with noise in height.
-Cloud scan(const Surface& surface, const Rectangle& area, std::size_t count, double noise,
+Cloud scan(const HeightAt& surface, const Rectangle& area, std::size_t count, double noise,
            std::uint64_t seed) {
   Random random(seed);
   std::vector<Eigen::Vector3d> points;

@@ -18,6 +18,7 @@
 
 #include <excavplan/scans/scan_surface.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/las_file.hpp"
 
@@ -27,22 +28,22 @@ namespace {
 using test::error_about;
 using test::LasFile;
 
-class TempFile {
+class TempLas {
  public:
-  explicit TempFile(const std::string& content)
+  explicit TempLas(const std::string& content)
       : path_(testing::TempDir() + "excavplan_las_" + std::to_string(::getpid()) + ".las") {
     std::ofstream(path_, std::ios::binary) << content;
   }
-  ~TempFile() { std::filesystem::remove(path_); }
-  TempFile(const TempFile&) = delete;
-  TempFile& operator=(const TempFile&) = delete;
+  ~TempLas() { std::filesystem::remove(path_); }
+  TempLas(const TempLas&) = delete;
+  TempLas& operator=(const TempLas&) = delete;
   const std::string& path() const { return path_; }
 
  private:
   std::string path_;
 };
 
-Cloud read_bytes(const std::string& bytes) { return read_cloud(TempFile(bytes).path()); }
+Cloud read_bytes(const std::string& bytes) { return read_cloud(TempLas(bytes).path()); }
 
 void expect_two_points(const LasFile& file) {
   const Cloud cloud = read_bytes(file.bytes());
@@ -132,7 +133,7 @@ TEST(ReadLas, PointsStandAcrossTheWindow) {
     for (std::size_t i = 0; i < file.points.size(); ++i) {
       file.points[i].xyz = {static_cast<std::int32_t>(i), -static_cast<std::int32_t>(i), 7};
     }
-    const TempFile temp(file.bytes());
+    const TempLas temp(file.bytes());
     std::size_t next = 0;
     stream_cloud(temp.path(), [&](const std::vector<Eigen::Vector3d>& points) {
       for (const Eigen::Vector3d& p : points) {
@@ -152,7 +153,7 @@ TEST(ReadLas, AFileMayBeLargerThanMemory) {
   std::string head = file.bytes();
   constexpr std::uint64_t count = 5000000000;  // more than the older count holds
   LasFile::put(head, 247, count);
-  const TempFile temp(head);
+  const TempLas temp(head);
   ASSERT_EQ(::truncate(temp.path().c_str(), static_cast<off_t>(head.size() + 20 * count)), 0);
   struct Enough {};
   std::size_t points = 0;
@@ -203,32 +204,29 @@ Change add(const std::string& more) {
   return [more](std::string& bytes) { bytes += more; };
 }
 
-struct BadFile {
+struct BadLas {
   int minor;
   Change change;
   std::string message;
 };
 
-void expect_refused(const std::vector<BadFile>& corpus) {
-  for (const BadFile& bad : corpus) {
+void expect_refused_las(const std::vector<BadLas>& corpus) {
+  for (const BadLas& bad : corpus) {
     LasFile file;
     file.minor = bad.minor;
     file.records = {std::string(100, 'r')};
     std::string bytes = file.bytes();
     bad.change(bytes);
-    const TempFile temp(bytes);
+    const TempLas temp(bytes);
     const std::string error = error_about([&] { read_cloud(temp.path()); }, temp.path());
     EXPECT_NE(error.find(bad.message), std::string::npos)
         << "found:    " << error << "\nexpected: " << bad.message;
   }
 }
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 TEST(BadLas, TheHeadDoesNotHold) {
   const std::string size = "byte 94: found a header of ";
-  expect_refused({
+  expect_refused_las({
       {2, cut(4), "byte 4: found the end of the file, expected a LAS header of 227 bytes"},
       {2, cut(5), "byte 5: found the end of the file"},
       {2, cut(226), "byte 226: found the end of the file"},
@@ -253,7 +251,7 @@ TEST(BadLas, TheHeadDoesNotHold) {
 }
 
 TEST(BadLas, ThePointsAreNone) {
-  expect_refused({
+  expect_refused_las({
       {2, set<std::uint8_t>(104, 11), "byte 104: found point format 11, expected 0 to 10"},
       {2, set<std::uint8_t>(104, 63), "found point format 63"},
       {2, set<std::uint8_t>(104, 1), "byte 105: found points of 20 bytes, expected 28 or more for"},
@@ -284,17 +282,17 @@ TEST(BadLas, ThePointsAreNone) {
 
 TEST(BadLas, ScaleAndOffsetAreNone) {
   const std::string scale = "byte 131: found a scale factor that is 0, negative or not finite";
-  expect_refused({{2, set(131, 0.0), scale},
-                  {2, set(139, -0.001), scale},
-                  {2, set(147, nan), scale},
-                  {2, set(147, inf), scale},
-                  {2, set(155, nan), "byte 155: found an offset that is not finite"},
-                  {2, set(171, -inf), "byte 155: found an offset that is not finite"}});
+  expect_refused_las({{2, set(131, 0.0), scale},
+                      {2, set(139, -0.001), scale},
+                      {2, set(147, nan), scale},
+                      {2, set(147, infinity), scale},
+                      {2, set(155, nan), "byte 155: found an offset that is not finite"},
+                      {2, set(171, -infinity), "byte 155: found an offset that is not finite"}});
 }
 
 TEST(BadLas, RecordsDoNotFit) {
   const std::string record = "byte 227: found variable length record 1 of 1 reaching past the ";
-  expect_refused({
+  expect_refused_las({
       {2, set<std::uint16_t>(227 + 20, 101), record + "first point, expected its end by byte 381"},
       {2, set<std::uint16_t>(227 + 20, 65535), record},
       {2, set<std::uint32_t>(100, 2), "byte 381: found variable length record 2 of 2 reaching"},
@@ -329,7 +327,7 @@ constexpr std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
 TEST(BadLas, CoordinatesBeyondTheIntegersNameOffsetAndScale) {
   LasFile file;
   file.points.assign(20, {{1000, lowest, 3}});
-  const TempFile saturated(file.bytes());
+  const TempLas saturated(file.bytes());
   EXPECT_EQ(
       error_about([&] { read_cloud(saturated.path()); }, saturated.path()),
       "found 20 of 20 points at the limit of a 32-bit integer in y: its offset 0 with the "
@@ -338,7 +336,7 @@ TEST(BadLas, CoordinatesBeyondTheIntegersNameOffsetAndScale) {
       "--writers.las.offset_y=auto");
   file.points.resize(900, {{1000, 2000, 3000}});
   for (std::size_t i = 0; i < 20; ++i) file.points[i] = {{highest, 2, 3}};
-  const TempFile in_x(file.bytes());
+  const TempLas in_x(file.bytes());
   EXPECT_NE(error_about([&] { read_cloud(in_x.path()); }, in_x.path()).find("20 of 900 points at"),
             std::string::npos);
   file.points.resize(2100, {{1000, 2000, 3000}});  // 0.95 %: stray points
@@ -361,7 +359,7 @@ std::string error_of_system(const std::string& record, bool is_text, double unit
   LasFile file;
   file.records = {record};
   file.record_kind = is_text ? 2112 : 34735;
-  const TempFile las(file.bytes());
+  const TempLas las(file.bytes());
   Scan scan;
   scan.files = {las.path()};
   scan.unit = unit;
@@ -432,7 +430,7 @@ TEST(BadLas, ReportedSaturationIsNamed) {
 TEST(BadLas, CompressedPointsNameThePrograms) {
   const std::string convert =
       "expected uncompressed LAS: convert it by pdal translate in.laz out.las, or laszip -i";
-  expect_refused({
+  expect_refused_las({
       {2, set<std::uint8_t>(104, 128), "byte 104: found points compressed as LAZ, " + convert},
       {4, set<std::uint8_t>(104, 128 + 6), "found points compressed as LAZ, " + convert},
       {2, set<std::uint8_t>(104, 64), "found points compressed as LAZ, " + convert},
@@ -440,7 +438,7 @@ TEST(BadLas, CompressedPointsNameThePrograms) {
   LasFile file;
   file.record_user = "laszip encoded";
   file.records = {std::string(34, '\0')};
-  const TempFile temp(file.bytes());
+  const TempLas temp(file.bytes());
   EXPECT_NE(error_about([&] { read_cloud(temp.path()); }, temp.path())
                 .find("byte 227: found a record of LASzip, " + convert),
             std::string::npos);
@@ -463,7 +461,7 @@ TEST(BadLas, MutationsAreReadOrRefusedButNeverCrash) {
         bytes[random.index(std::min(head, bytes.size()))] = static_cast<char>(random.index(256));
         if (random.index(10) == 0) bytes.resize(1 + random.index(bytes.size()));
       }
-      const TempFile temp(bytes);
+      const TempLas temp(bytes);
       try {
         const Cloud cloud = read_cloud(temp.path());
         EXPECT_LE(cloud.points.size() * 20, bytes.size());

@@ -15,7 +15,7 @@
 #include <excavplan/clouds/cloud.hpp>
 #include <excavplan/ground/map_files.hpp>
 
-#include "base/little_endian.hpp"
+#include "base/scalar.hpp"
 #include "clouds/tiff_coding.hpp"
 #include "support/errors.hpp"
 

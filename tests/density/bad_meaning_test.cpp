@@ -41,6 +41,7 @@ using Eigen::Vector3d;
 using Inputs = std::vector<WrongInput>;
 using Codes = std::vector<std::string>;
 using scenes::degree;
+using test::loam;
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
@@ -746,10 +747,6 @@ TEST(BadMeaning, DepthImages) {
 
 // ---- Soil, law, payload -------------------------------------------------------------------------
 
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
 const SoilKind& sand() {
   static const SoilKind soil = load_soil(find_data_file("soils/sand.json"));
   return soil;

@@ -28,7 +28,7 @@ namespace {
 using scenes::Part;
 using test::error_of;
 
-std::shared_ptr<const Cloud> cloud_of(std::vector<Eigen::Vector3d> points) {
+std::shared_ptr<const Cloud> cloud_from(std::vector<Eigen::Vector3d> points) {
   auto cloud = std::make_shared<Cloud>();
   cloud->points = std::move(points);
   cloud->width = cloud->points.size();
@@ -40,7 +40,7 @@ Scan seen(Part part, bool after, double bulking = 1.2) {
   scenes::Dig dig;
   dig.bulking = bulking;
   Scan scan;
-  scan.clouds = {cloud_of(scenes::scan(dig, part, scenes::errors_of("noise"), 60000, 7, after))};
+  scan.clouds = {cloud_from(scenes::scan(dig, part, scenes::errors_of("noise"), 60000, 7, after))};
   return scan;
 }
 
@@ -254,7 +254,7 @@ DigScans half_of_the_bite(std::uint64_t split, bool second) {
       if ((random.uniform() < 0.5) == second) points.push_back(point);
     }
     Scan scan;
-    scan.clouds = {cloud_of(std::move(points))};
+    scan.clouds = {cloud_from(std::move(points))};
     scan.site_from_scan = read_frame(folder + name + "_frame.txt");
     scan.area = Rectangle{0.3, 0.3, 9.0, 10.0};
     return scan;

@@ -31,7 +31,7 @@ RelativeDensity density_of(double percent, double independent_sd, double shared_
   return density;
 }
 
-bool has(const std::vector<Warning>& warnings, const std::string& code) {
+bool warns_of(const std::vector<Warning>& warnings, const std::string& code) {
   return std::any_of(warnings.begin(), warnings.end(),
                      [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
@@ -175,14 +175,14 @@ TEST_F(Successive, AnUntrustedPriorIsLeftOutWithAWarning) {
   const auto estimate = test::estimate_of(change, law, options);
   EXPECT_FALSE(estimate.successive);
   EXPECT_TRUE(estimate.trustworthy);
-  EXPECT_TRUE(has(estimate.warnings, "prior_not_trustworthy"));
+  EXPECT_TRUE(warns_of(estimate.warnings, "prior_not_trustworthy"));
   EXPECT_EQ(estimate.density->percent, alone.density->percent);
   options.prior->trustworthy = true;
   const auto joined = test::estimate_of(change, law, options);
   EXPECT_GT(joined.density->percent, alone.density->percent);
   options.prior->raw_percent += 40.0;
   const auto apart = test::estimate_of(change, law, options);
-  EXPECT_TRUE(has(apart.warnings, "prior_disagrees"));
+  EXPECT_TRUE(warns_of(apart.warnings, "prior_disagrees"));
   EXPECT_FALSE(apart.trustworthy);
 }
 

@@ -19,7 +19,7 @@
 #include <excavplan/design/design_file.hpp>
 #include <excavplan/ground/map_files.hpp>
 
-#include "base/little_endian.hpp"
+#include "base/scalar.hpp"
 #include "base/text.hpp"
 
 /// @file One surface written in every format.

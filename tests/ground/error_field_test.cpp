@@ -3,13 +3,13 @@
 #include "ground/error_field.hpp"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "base/non_finite.hpp"
 #include "ground/noise_model.hpp"
 #include "ground/registration.hpp"
 #include "ground/slopes.hpp"
@@ -40,7 +40,6 @@ Site site_of(Eigen::Index cells, Eigen::Index zone_cells, double wave_length) {
   const Eigen::Index first = (cells - zone_cells) / 2;
   site.zone.setConstant(cells, cells, -1);
   site.zone.block(first, first, zone_cells, zone_cells).setZero();
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   site.residual.setConstant(cells, cells, nan);
   site.residual.block(1, 1, cells - 2, cells - 2).setZero();
   site.residual.block(first, first, zone_cells, zone_cells).setConstant(nan);

@@ -11,13 +11,12 @@
 
 #include <excavplan/ground/map_files.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Of numbers that no decimal of a few digits holds, with what is not known in each layer.
 GroundState full_state() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,6 +13,8 @@
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/ground/resampling.hpp>
 
+#include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 #include "change/change_zones.hpp"
 #include "change/systematic_errors.hpp"
@@ -22,9 +23,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double degree = 0.017453292519943295;
 
 // ---------------------------------------------------------------------------------------------
 // The scene: pit, spill ridge and heap with closed-form volumes.

@@ -3,17 +3,16 @@
 #include "ground/hole_filling.hpp"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Eigen::Index edge = 41;
 constexpr Eigen::Index middle = 20;
 

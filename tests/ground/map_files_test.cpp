@@ -7,19 +7,17 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <excavplan/base/error.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Three columns by two rows that no turn or mirror leaves as it is; the cell in the middle of the
 /// upper row is not known.

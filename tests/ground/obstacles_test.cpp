@@ -12,7 +12,7 @@ namespace {
 
 using Height = std::function<double(double x, double y)>;
 
-HeightMap map_of(const Height& height) {
+HeightMap square_map(const Height& height) {
   HeightMap map = flat_ground({0.0, -4.0, 9.0, 4.0}, 0.05);
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
@@ -24,7 +24,7 @@ HeightMap map_of(const Height& height) {
 
 /// Found area [m^2].
 double found(const Height& height) {
-  return static_cast<double>(find_obstacles(map_of(height)).count()) * 0.05 * 0.05;
+  return static_cast<double>(find_obstacles(square_map(height)).count()) * 0.05 * 0.05;
 }
 
 Height box(double length, double width, double height) {
@@ -56,7 +56,7 @@ TEST(Obstacles, ABenchIsGround) {
 }
 
 TEST(Obstacles, UnknownGroundAroundDoesNotHideABox) {
-  HeightMap map = map_of(box(2.0, 2.0, 2.0));
+  HeightMap map = square_map(box(2.0, 2.0, 2.0));
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     if (map.x(col) > 5.5) map.z.col(col).setConstant(std::nan(""));
   }
@@ -65,14 +65,14 @@ TEST(Obstacles, UnknownGroundAroundDoesNotHideABox) {
 }
 
 TEST(Obstacles, TheGroundBelowIsUnknownAndTheirTopIsKept) {
-  const Terrain ground = with_obstacles(undisturbed(map_of(box(0.7, 0.7, 0.8))));
+  const Terrain ground = with_obstacles(undisturbed(square_map(box(0.7, 0.7, 0.8))));
   const auto row = ground.bank.z.rows() / 2, col = ground.bank.z.cols() / 2;
   EXPECT_TRUE(std::isnan(ground.bank.z(row, col)));
   EXPECT_EQ(ground.obstacles(row, col), 0.8);
   EXPECT_EQ(ground.highest().z(row, col), 0.8);
   EXPECT_TRUE(std::isnan(ground.obstacles(5, 5)));
   EXPECT_EQ(ground.highest().z(5, 5), 0.0);
-  EXPECT_EQ(with_obstacles(undisturbed(map_of(box(0.7, 0.7, 0.3)))).obstacles.size(), 0);
+  EXPECT_EQ(with_obstacles(undisturbed(square_map(box(0.7, 0.7, 0.3)))).obstacles.size(), 0);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -14,6 +13,7 @@
 #include <excavplan/ground/registration.hpp>
 #include "base/random.hpp"
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/survey_scenes.hpp"
 
@@ -24,7 +24,6 @@ using scenes::degree;
 using scenes::Ground;
 using scenes::ScanErrors;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double cell = 0.05;
 
 ScanErrors rough_ground() {

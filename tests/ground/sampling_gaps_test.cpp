@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 #include "change/systematic_errors.hpp"
 
@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Index side = 80;
 
 /// Heights of a map of cells of 5 cm, with points where `is_known`.

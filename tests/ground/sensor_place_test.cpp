@@ -39,7 +39,7 @@ Facet ridges(double x, double y) {
 }
 
 /// A heap of 0.8 m at 45 degrees.
-Facet heap(double x, double y) {
+Facet steep_heap(double x, double y) {
   const Eigen::Vector2d from(x - 3.75, y - 3.0);
   const double height = 0.8 - from.norm();
   return height > 0.0 ? Facet{height, -from.normalized()} : Facet{0.0, {0.0, 0.0}};
@@ -165,7 +165,7 @@ TEST(SensorPlace, OfALowSensorBesideASteepHeapIsAboveTheHeap) {
   for (int heading = 0; heading < 360; heading += 45) {
     const double angle = heading * pi / 180.0;
     const Eigen::Vector3d place(3.75 + 1.6 * std::cos(angle), 3.0 + 1.6 * std::sin(angle), 1.3);
-    Surface scan = random_scan(heap, place, 1, 1);
+    Surface scan = random_scan(steep_heap, place, 1, 1);
     scan.sensors = {place};
     const auto found = infer_sensor(scan);
     ASSERT_TRUE(found) << heading;

@@ -5,7 +5,6 @@
 /// Hostile clouds, scans, poses and logs: what of the room survey needs no PCL.
 
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include <excavplan/scans/scan_pose.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/hostile.hpp"
 
 namespace excavplan {
@@ -27,8 +27,6 @@ using test::answers;
 using test::finite;
 using test::refuses;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Rectangle square = {-1.0, -1.0, 1.0, 1.0};
 
 /// 60 x 60 points of a floor that a sensor 2 m above sees.

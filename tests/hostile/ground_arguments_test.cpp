@@ -20,26 +20,18 @@
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/sensing/scene.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/hostile.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
 
 using test::answers;
 using test::finite;
+using test::loam;
 using test::refuses;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
+using test::zx120;
 
 /// Hilly ground of 40 x 40 cells, with a pit and a heap if it was dug.
 HeightMap hills(bool dug) {
@@ -318,13 +310,13 @@ TEST(HostileChange, ResultsThatWereChanged) {
 
 // ---- terrains -----------------------------------------------------------------------------------
 
-const Terrain& ground() {
+const Terrain& ground_to_dig() {
   static const Terrain terrain = level_planning_ground(zx120(), 0.1);
   return terrain;
 }
 const DigPath& path() {
   static const DigPath laid = std::get<DigPath>(
-      make_dig_path_anywhere(zx120(), paper_fixed_path(), boom_plane_profile(ground())));
+      make_dig_path_anywhere(zx120(), paper_fixed_path(), boom_plane_profile(ground_to_dig())));
   return laid;
 }
 
@@ -334,7 +326,7 @@ bool sound(const DigResult& result) {
 }
 
 TEST(HostileTerrain, NumbersAreRefusedOrHarmless) {
-  Terrain uneven = ground();
+  Terrain uneven = ground_to_dig();
   uneven.bank_void_ratio = Eigen::ArrayXXd::Constant(uneven.loose.rows(), uneven.loose.cols(), 0.7);
   uneven.loose_void_ratio = uneven.bank_void_ratio;
   const Eigen::Index row = uneven.loose.rows() / 2;
@@ -368,7 +360,8 @@ TEST(HostileTerrain, NumbersAreRefusedOrHarmless) {
 }
 
 TEST(HostileTerrain, LayersOfOtherSizesAreRefused) {
-  Terrain thin = ground(), wide = ground(), dense = ground(), moved = ground();
+  Terrain thin = ground_to_dig(), wide = ground_to_dig(), dense = ground_to_dig(),
+          moved = ground_to_dig();
   thin.loose.resize(0, 0);
   wide.loose.setZero(1000, 1000);
   dense.bank_void_ratio.setConstant(2, 2, 0.7);
@@ -378,19 +371,35 @@ TEST(HostileTerrain, LayersOfOtherSizesAreRefused) {
     EXPECT_TRUE(refuses([&] { simulator->dig(bad, path()); }, "dig: "));
     EXPECT_TRUE(refuses([&] { boom_plane_profile(bad); }, "ground profile: "));
     EXPECT_TRUE(refuses([&] { boom_plane_slope(bad, 2.0); }, "ground profile: "));
-    EXPECT_TRUE(refuses([&] { height_map_volumes(bad, ground(), {5, 0}); }, "volumes, before: "));
-    EXPECT_TRUE(refuses([&] { height_map_volumes(ground(), bad, {5, 0}); }, "volumes, after: "));
-    EXPECT_TRUE(refuses([&] { heap_slope(ground(), bad, {5, 0}); }, "volumes, after: "));
+    EXPECT_TRUE(refuses(
+        [&] {
+          height_map_volumes(bad, ground_to_dig(), {5, 0});
+        },
+        "volumes, before: "));
+    EXPECT_TRUE(refuses(
+        [&] {
+          height_map_volumes(ground_to_dig(), bad, {5, 0});
+        },
+        "volumes, after: "));
+    EXPECT_TRUE(refuses([&] { heap_slope(ground_to_dig(), bad, {5, 0}); }, "volumes, after: "));
     EXPECT_TRUE(refuses([&] { evaluate_dig(zx120(), *simulator, bad, paper_fixed_path()); }));
     EXPECT_TRUE(refuses([&] { run_scene(zx120(), loam(), 40.0, bad); }, "ground of a scene: "));
   }
   EXPECT_TRUE(refuses([&] { static_cast<void>(thin.surface()); }, "loose layer"));
   const Terrain other = level_planning_ground(zx120(), 0.2);
-  EXPECT_TRUE(refuses([&] { height_map_volumes(ground(), other, {5, 0}); }, "one grid"));
+  EXPECT_TRUE(refuses([&] { height_map_volumes(ground_to_dig(), other, {5, 0}); }, "one grid"));
   for (const double bad : {nan, infinity, -infinity}) {
-    EXPECT_TRUE(refuses([&] { height_map_volumes(ground(), ground(), {bad, 0}); }, "dump point"));
-    EXPECT_TRUE(refuses([&] { height_map_volumes(ground(), ground(), {5, 0}, bad); }, "radius"));
-    EXPECT_TRUE(refuses([&] { boom_plane_slope(ground(), bad); }, "from x"));
+    EXPECT_TRUE(refuses(
+        [&] {
+          height_map_volumes(ground_to_dig(), ground_to_dig(), {bad, 0});
+        },
+        "dump point"));
+    EXPECT_TRUE(refuses(
+        [&] {
+          height_map_volumes(ground_to_dig(), ground_to_dig(), {5, 0}, bad);
+        },
+        "radius"));
+    EXPECT_TRUE(refuses([&] { boom_plane_slope(ground_to_dig(), bad); }, "from x"));
     EXPECT_TRUE(refuses([&] { sloped_planning_ground(zx120(), bad, 0.1); }, "slope"));
     EXPECT_TRUE(refuses([&] { level_planning_ground(zx120(), bad); }, "cell"));
     EXPECT_TRUE(refuses([&] { scene_extent(zx120(), {bad, 0.0}); }, "dump point"));
@@ -406,7 +415,7 @@ TEST(HostileTerrain, PatchesOfAnotherGridAreRefused) {
   const auto refused = [&](const std::function<void(TerrainPatch&)>& spoil) {
     TerrainPatch bad = good;
     spoil(bad);
-    Terrain terrain = ground();
+    Terrain terrain = ground_to_dig();
     return refuses([&] { apply(bad, terrain); }, "patch");
   };
   constexpr Eigen::Index most = std::numeric_limits<Eigen::Index>::max();
@@ -417,7 +426,7 @@ TEST(HostileTerrain, PatchesOfAnotherGridAreRefused) {
   EXPECT_TRUE(refused([](TerrainPatch& p) { p.loose.resize(3, 3); }));
   EXPECT_TRUE(refused([](TerrainPatch& p) { p.bank.setZero(900, 900); }));
   EXPECT_TRUE(refused([](TerrainPatch& p) { p.loose_void_ratio.setConstant(3, 4, 0.7); }));
-  Terrain terrain = ground();
+  Terrain terrain = ground_to_dig();
   EXPECT_NO_THROW(apply({}, terrain));
   EXPECT_NO_THROW(apply(good, terrain));
   Terrain empty;
@@ -434,31 +443,33 @@ TEST(HostileTerrain, PathsAndOptionsOfADig) {
       for (const auto& spoil : spoils) {
         DigPath broken = path();
         spoil(broken.poses[5]);
-        EXPECT_TRUE(refuses([&] { simulator->dig(ground(), broken); }, "dig: ")) << kind.name;
+        EXPECT_TRUE(refuses([&] { simulator->dig(ground_to_dig(), broken); }, "dig: "))
+            << kind.name;
       }
       DigPath broken = path();
       broken.poses[5].bucket.floor_angle = bad;
-      EXPECT_TRUE(answers([&] { return sound(simulator->dig(ground(), broken)); })) << kind.name;
+      EXPECT_TRUE(answers([&] { return sound(simulator->dig(ground_to_dig(), broken)); }))
+          << kind.name;
       DigOptions options;
       options.dump_at = Eigen::Vector2d(bad, 0.0);
-      EXPECT_TRUE(refuses([&] { simulator->dig(ground(), path(), options); }, "dump point"));
+      EXPECT_TRUE(refuses([&] { simulator->dig(ground_to_dig(), path(), options); }, "dump point"));
       options = {};
       options.give_up_below = bad;
-      EXPECT_TRUE(answers([&] { return sound(simulator->dig(ground(), path(), options)); }));
+      EXPECT_TRUE(answers([&] { return sound(simulator->dig(ground_to_dig(), path(), options)); }));
     }
     DigPath phase = path();
     phase.poses[2].phase = static_cast<DigPhase>(99);
-    EXPECT_TRUE(refuses([&] { simulator->dig(ground(), phase); }, "of a phase"));
+    EXPECT_TRUE(refuses([&] { simulator->dig(ground_to_dig(), phase); }, "of a phase"));
     DigPath deep = path();
     for (DigPose& pose : deep.poses) pose.bucket.z -= 50.0;
-    EXPECT_TRUE(answers([&] { return sound(simulator->dig(ground(), deep)); }));
-    EXPECT_TRUE(refuses([&] { simulator->dig(ground(), {}); }, "2 poses"));
+    EXPECT_TRUE(answers([&] { return sound(simulator->dig(ground_to_dig(), deep)); }));
+    EXPECT_TRUE(refuses([&] { simulator->dig(ground_to_dig(), {}); }, "2 poses"));
   }
   EXPECT_TRUE(refuses([] { simulator_of_word("none"); }, "none"));
 }
 
 TEST(HostileTerrain, FallbackAndScenes) {
-  const HeightMap flat = ground().bank;
+  const HeightMap flat = ground_to_dig().bank;
   ASSERT_NO_THROW(measure_fallback(zx120(), path(), flat, flat));
   EXPECT_TRUE(refuses([&] { measure_fallback({}, path(), flat, flat); }, "machine"));
   EXPECT_TRUE(refuses([&] { measure_fallback(zx120(), {}, flat, flat); }, "fallback"));

@@ -20,20 +20,19 @@
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil_scatter.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/hostile.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
 
 using test::answers;
 using test::finite;
+using test::loam;
 using test::refuses;
+using test::zx120;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Machine zx120() { return load_machine(find_data_file("machines/zx120.json")); }
-SoilKind loam() { return load_soil(find_data_file("soils/loam.json")); }
 double level(double) { return 0.0; }
 
 DigPath good_path() {

@@ -23,27 +23,21 @@
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/hostile.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
 
 using test::answers;
 using test::finite;
+using test::loam;
 using test::refuses;
+using test::zx120;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int most = std::numeric_limits<int>::max();
 
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
 std::unique_ptr<const SoilSimulator> section(double density = 40.0) {
   return simulator_of_word("section").make(zx120(), loam(), density);
 }

@@ -5,13 +5,13 @@
 /// Hostile times, spans, paths, topics and frames for the readers of recordings.
 
 #include <chrono>
-#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include <excavplan/recording/recording.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/hostile.hpp"
 #include "support/recording_files.hpp"
@@ -21,9 +21,6 @@ namespace {
 
 using test::answers;
 using test::refuses;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A recording that needs none of the optional libraries.
 RecordingQuery good() { return {test::recording("scene_none.mcap"), "/lidar/points", {}, 0.0, ""}; }

@@ -17,19 +17,17 @@
 #include <excavplan/images/depth_image.hpp>
 #include <excavplan/sensing/survey_plan.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/hostile.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
 
 using test::answers;
 using test::finite;
+using test::loam;
 using test::refuses;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-SoilKind loam() { return load_soil(find_data_file("soils/loam.json")); }
 
 /// A pit and a heap on ground of 4 m x 2 m, a point in every 2 cm.
 Scan scan(bool dug) {

@@ -5,7 +5,6 @@
 /// Simulators of users that throw, or answer with what no dig can have: refused with their name.
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -22,30 +21,23 @@
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "support/energy_bound.hpp"
 #include "support/errors.hpp"
 #include "support/hostile.hpp"
+#include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
 
+using test::loam;
 using test::refuses;
+using test::zx120;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
-const Terrain& ground() {
+const Terrain& level_ground() {
   static const Terrain terrain = level_planning_ground(zx120(), 0.1);
   return terrain;
 }
@@ -151,21 +143,23 @@ std::vector<Case> spoilt_results() {
 TEST(UsersSimulator, BadResultOfOneDigIsRefusedByName) {
   for (const Case& bad : spoilt_results()) {
     const Spoilt simulator(40.0, bad.spoil);
-    EXPECT_TRUE(refuses([&] { evaluate_dig(zx120(), simulator, ground(), paper_fixed_path()); },
-                        "simulator 'spoilt 1': "));
     EXPECT_TRUE(
-        refuses([&] { evaluate_dig(zx120(), simulator, ground(), paper_fixed_path()); }, bad.text));
+        refuses([&] { evaluate_dig(zx120(), simulator, level_ground(), paper_fixed_path()); },
+                "simulator 'spoilt 1': "));
+    EXPECT_TRUE(refuses(
+        [&] { evaluate_dig(zx120(), simulator, level_ground(), paper_fixed_path()); }, bad.text));
   }
   const Spoilt sound(40.0, [](const DigPath&, DigResult&) {});
-  EXPECT_EQ(evaluate_dig(zx120(), sound, ground(), paper_fixed_path()).index(), 0U);
+  EXPECT_EQ(evaluate_dig(zx120(), sound, level_ground(), paper_fixed_path()).index(), 0U);
 }
 
 TEST(UsersSimulator, WithoutIdentityItsClassNamesIt) {
   for (const char* identity : {"", "throws"}) {
     const Spoilt simulator(
         40.0, [](const DigPath&, DigResult& r) { r.payload_mass = nan; }, identity);
-    EXPECT_TRUE(refuses([&] { evaluate_dig(zx120(), simulator, ground(), paper_fixed_path()); },
-                        "simulator 'Spoilt': "));
+    EXPECT_TRUE(
+        refuses([&] { evaluate_dig(zx120(), simulator, level_ground(), paper_fixed_path()); },
+                "simulator 'Spoilt': "));
   }
 }
 
@@ -176,13 +170,14 @@ TEST(UsersSimulator, AnIdentityThatThrowsIsAnErrorOfACheckpoint) {
   DigSearchOptions options;
   options.stop.evaluations = 10;
   options.checkpoint = folder.file("digs.txt");
-  EXPECT_TRUE(refuses([&] { search_dig(zx120(), simulator, ground(), options); },
+  EXPECT_TRUE(refuses([&] { search_dig(zx120(), simulator, level_ground(), options); },
                       "simulator 'Spoilt': it threw: no identity"));
 }
 
 TEST(UsersSimulator, ALackOfMemoryIsNotItsFault) {
   const Spoilt simulator(40.0, [](const DigPath&, DigResult&) { throw std::bad_alloc(); });
-  EXPECT_THROW(evaluate_dig(zx120(), simulator, ground(), paper_fixed_path()), std::bad_alloc);
+  EXPECT_THROW(evaluate_dig(zx120(), simulator, level_ground(), paper_fixed_path()),
+               std::bad_alloc);
 }
 
 TEST(UsersSimulator, PlansScenesAndExperimentsRefuseIt) {
@@ -258,7 +253,7 @@ TEST(UsersSimulator, OneThatAlwaysFailsEndsASearchWithinTwentyDigs) {
     DigSearchOptions options = budget(300);
     options.threads = 1;
     const std::string text =
-        test::error_of([&] { search_dig(zx120(), simulator, ground(), options); });
+        test::error_of([&] { search_dig(zx120(), simulator, level_ground(), options); });
     EXPECT_LE(digs, 20) << bad.text;
     EXPECT_NE(text.find("evaluations failed, the first one: simulator 'spoilt 1': "),
               std::string::npos)
@@ -272,7 +267,7 @@ TEST(UsersSimulator, OneThatAlwaysFailsEndsASearchWithinTwentyDigs) {
 TEST(UsersSimulator, OneThatFailsNowAndThenFindsAsGoodADig) {
   constexpr int digs = 260;
   const auto good = simulator_of_word("section").make(zx120(), loam(), 40.0);
-  const auto best = search_dig(zx120(), *good, ground(), budget(digs));
+  const auto best = search_dig(zx120(), *good, level_ground(), budget(digs));
   ASSERT_TRUE(best);
   int reached = 0;
   for (const std::uint64_t seed : {1U, 2U}) {
@@ -296,7 +291,7 @@ TEST(UsersSimulator, OneThatFailsNowAndThenFindsAsGoodADig) {
     });
     DigSearchOptions options = budget(digs * 13 / 10);
     options.seed = seed;
-    const auto found = search_dig(zx120(), simulator, ground(), options);
+    const auto found = search_dig(zx120(), simulator, level_ground(), options);
     ASSERT_TRUE(found);
     EXPECT_GT(found->failed, 0);
     EXPECT_LT(found->failed, found->evaluations / 3);
@@ -319,10 +314,11 @@ TEST(UsersSimulator, TheBoundOfEnergyIsThatOfTheBuiltInOnes) {
     for (const DigParameterInfo& info : dig_parameter_table()) {
       parameters.*info.field = random.uniform(info.lower, info.upper);
     }
-    const auto laid = make_dig_path_anywhere(zx120(), parameters, boom_plane_profile(ground()));
+    const auto laid =
+        make_dig_path_anywhere(zx120(), parameters, boom_plane_profile(level_ground()));
     if (laid.index() != 0) continue;
     const auto& path = std::get<DigPath>(laid);
-    const DigResult result = kind.make(zx120(), loam(), density)->dig(ground(), path);
+    const DigResult result = kind.make(zx120(), loam(), density)->dig(level_ground(), path);
     if (result.stall || result.payload_mass <= 0.0) continue;
     ++digs;
     share = std::max(share, test::share_of_lifting(zx120(), path, result));
@@ -334,7 +330,7 @@ TEST(UsersSimulator, TheBoundOfEnergyIsThatOfTheBuiltInOnes) {
       spoilt = true;
     });
     const bool refused =
-        refuses([&] { evaluate_dig(zx120(), cheap, ground(), parameters); }, "less than");
+        refuses([&] { evaluate_dig(zx120(), cheap, level_ground(), parameters); }, "less than");
     EXPECT_EQ(refused, spoilt);
   }
   EXPECT_GT(digs, 40);

@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "base/non_finite.hpp"
 #include "job/trench_job.hpp"
 #include "site/cell_codes.hpp"
 #include "support/errors.hpp"
@@ -69,7 +70,6 @@ TEST(CellCodes, NumbersComeBack) {
 }
 
 TEST(JobHistory, HeightsAreKeptInMillimetresAndStepsAsWhatTheyChanged) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   JobHistory start;
   start.before = flat_ground({0.0, 0.0, 1.0, 0.6}, 0.1, 0.25049);
   start.before.z(0, 0) = nan;

@@ -12,6 +12,7 @@
 
 #include <excavplan/job/job_motion.hpp>
 
+#include "base/non_finite.hpp"
 #include "ground/grid_cells.hpp"
 #include "job/job_record.hpp"
 #include "job/trench_job.hpp"
@@ -225,7 +226,6 @@ TEST(SiteJob, AReportThatCannotBeOfTheStepIsRefused) {
     EXPECT_EQ(begun.of.record(), before) << text;
     return text;
   };
-  const double nan = std::nan("");
   ASSERT_EQ(begun.job.next().what, JobAction::move);
   EXPECT_EQ(refusal([](StepReport& each) { each.payload_mass = 310.0; }),
             "payload mass of step 1, move [kg] is 310, must be 0 or left out, as nothing is dug in "

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -19,6 +18,7 @@
 #include "base/random.hpp"
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/machine_file.hpp"
 
@@ -30,10 +30,6 @@ using Eigen::Vector3d;
 using nlohmann::json;
 using test::zx120;
 using test::zx120_path;
-
-constexpr double degree = pi / 180.0;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const Cylinder& cylinder(std::size_t joint) { return zx120().cylinders.value()[joint]; }
 

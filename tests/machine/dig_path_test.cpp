@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -15,23 +14,17 @@
 
 #include "base/angles.hpp"
 #include "base/files.hpp"
+#include "base/non_finite.hpp"
 #include "machine/dig_path_text.hpp"
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
+using test::zx120;
 using Reason = Infeasible::Reason;
-
-constexpr double degree = pi / 180.0;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 /// The published figures know no undercarriage.
 Machine without_tracks(double beta = 50 * degree) {

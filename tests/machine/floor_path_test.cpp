@@ -18,8 +18,6 @@ namespace {
 using test::error_of;
 using test::zx120;
 
-constexpr double degree = pi / 180.0;
-
 double level(double) { return 0.0; }
 
 DigPathOptions over(const GroundProfile& floor) {

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -20,6 +19,7 @@
 #include "base/random.hpp"
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "support/machine_file.hpp"
 
 namespace excavplan {
@@ -29,9 +29,6 @@ using Eigen::Vector2d;
 using nlohmann::json;
 using test::zx120;
 using test::zx120_path;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 JointAngles random_joints(const Machine& machine, Random& random) {
   JointAngles joints;

@@ -21,17 +21,15 @@
 
 #include "support/cases.hpp"
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double tolerance = 1e-6;  // of a limit, for rounding in differences of small steps
+using test::zx120;
 
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
+constexpr double tolerance = 1e-6;  // of a limit, for rounding in differences of small steps
 
 double flat(double) { return 0.0; }
 

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 
 #include "support/errors.hpp"
@@ -19,9 +21,6 @@ namespace excavplan {
 namespace {
 
 using test::error_of;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 using Surface = std::function<double(double x, double y)>;
 

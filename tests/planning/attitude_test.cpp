@@ -16,10 +16,12 @@
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/soil.hpp>
 
+#include "base/angles.hpp"
 #include "base/random.hpp"
 #include "machine/machine_mass.hpp"
 #include "planning/front_load.hpp"
 #include "planning/motion_load.hpp"
+#include "support/machine_file.hpp"
 
 /// @file
 /// A machine that does not stand level: torques, tipping and digs.
@@ -28,18 +30,6 @@ namespace excavplan::test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double degree = 0.017453292519943295;
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
-
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
 
 /// Potential energy of links and payload, their places turned into the level site frame [J].
 double potential(const Machine& machine, const FrontJoints& joints, double payload) {

@@ -18,20 +18,17 @@
 
 #include "base/yaml.hpp"
 
+#include "base/non_finite.hpp"
 #include "base/random.hpp"
 #include "planning/motion_load.hpp"
 #include "support/cases.hpp"
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 #include "support/motion_cases.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan::test {
 namespace {
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 const Terrain& level() {
   static const Terrain ground = level_planning_ground(zx120());
@@ -265,7 +262,6 @@ TEST(Motion, RefusesWhatNoControllerCanRun) {
     spoil(way, options, machine);
     return error_of([&] { time_way(machine, way, options); });
   };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double rate : {0.0, 9.9, 501.0, 1e9, nan}) {
     EXPECT_NE(complaint([&](Way&, MotionOptions& options, Machine&) {
                 options.rate = rate;

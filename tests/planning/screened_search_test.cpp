@@ -12,6 +12,8 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
+#include "base/non_finite.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -71,10 +73,9 @@ TEST(CoarserGround, HoldsAsMuchSoil) {
 }
 
 TEST(CoarserGround, DoesNotKnowWhatNoCellTells) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
   Terrain ground = undisturbed(flat_ground({0.0, 0.0, 0.4, 0.4}, 0.1));
-  ground.bank_void_ratio.setConstant(4, 4, unknown);
-  ground.loose_void_ratio.setConstant(4, 4, unknown);
+  ground.bank_void_ratio.setConstant(4, 4, nan);
+  ground.loose_void_ratio.setConstant(4, 4, nan);
   const Terrain coarse = coarser(ground, 2);
   EXPECT_TRUE(coarse.bank_void_ratio.isNaN().all());
   EXPECT_TRUE(coarse.loose_void_ratio.isNaN().all());

@@ -20,6 +20,7 @@
 
 #include "base/angles.hpp"
 #include "base/random.hpp"
+#include "support/machine_file.hpp"
 
 /// @file
 /// Ground under and about the tracks, as scans with noise, clods, outliers and shadows. Each fault
@@ -29,11 +30,6 @@ namespace excavplan::test {
 namespace {
 
 using Ground = std::function<double(double x, double y)>;
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 const double front = 1.8, half = 1.3;  // of its tracks [m]
 
@@ -64,7 +60,6 @@ Scene wrong_height(Random& random, bool bad) {
 }
 
 Scene tilt(Random& random, bool bad) {
-  constexpr double degree = pi / 180.0;
   const double slope =
       std::tan(degree * (bad ? random.uniform(4.0, 30.0) : random.uniform(0.0, 2.0)));
   const double heading = random.uniform(0.0, 2.0 * pi);

@@ -15,6 +15,7 @@
 
 #include "base/random.hpp"
 #include "planning/surroundings.hpp"
+#include "support/machine_file.hpp"
 
 /// @file
 /// What the way of a cycle passes over. Its clearance is found here from the points of the timed
@@ -24,11 +25,6 @@ namespace excavplan::test {
 namespace {
 
 using Eigen::Vector2d;
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 using Ground = std::function<double(double x, double y)>;
 
@@ -50,7 +46,7 @@ Ground box(double x_min, double y_min, double x_max, double y_max, double height
   };
 }
 
-FrontJoints front(double boom, double arm, double bucket, double swing = 0.0) {
+FrontJoints front_at(double boom, double arm, double bucket, double swing = 0.0) {
   return {boom, arm, bucket, swing};
 }
 
@@ -350,7 +346,7 @@ TEST(Surroundings, TheUndercarriageDoesNotTurnWithTheSwing) {
   double deepest = 0.0;
   for (double boom = -1.0; boom < 0.3; boom += 0.05) {
     for (double bucket = -0.5; bucket < 2.4; bucket += 0.1) {
-      const FrontJoints joints = front(boom, 2.65, bucket);
+      const FrontJoints joints = front_at(boom, 2.65, bucket);
       const double height = clearance(zx120(), joints, core);
       if (height >= deepest || clearance(zx120(), joints, level) < 0.0) continue;
       deepest = height;
@@ -367,9 +363,9 @@ TEST(Surroundings, TheUndercarriageDoesNotTurnWithTheSwing) {
   bool found = false;
   for (double boom = -1.0; boom < 0.0 && !found; boom += 0.02) {
     for (double bucket = 0.0; bucket < 2.4 && !found; bucket += 0.1) {
-      beside = front(boom, 2.58, bucket, 1.57);
+      beside = front_at(boom, 2.58, bucket, 1.57);
       found = clearance(zx120(), beside, undercarriage(zx120())) > 0.12 &&
-              clearance(zx120(), front(boom, 2.58, bucket, 0.7), undercarriage(zx120())) < -0.1;
+              clearance(zx120(), front_at(boom, 2.58, bucket, 0.7), undercarriage(zx120())) < -0.1;
     }
   }
   ASSERT_TRUE(found);
@@ -406,7 +402,7 @@ TEST(Surroundings, UnseenGroundOnTheWayEndsTrust) {
 TEST(Surroundings, GroundThatFineCellsKnowInPartDoesNotBecomeLower) {
   const Machine& machine = zx120();
   const auto joints = inverse_kinematics(machine, {5.2, 1.0, 0.3});
-  FrontJoints from = front(0.0, 0.0, 0.0, -0.3), to = from;
+  FrontJoints from = front_at(0.0, 0.0, 0.0, -0.3), to = from;
   from.head<3>() = to.head<3>() = std::get<JointAngles>(joints);
   to[3] = 0.3;
   const auto is_blocked = [&](double height) {

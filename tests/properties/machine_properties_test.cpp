@@ -10,15 +10,11 @@
 #include <excavplan/base/error.hpp>
 
 #include "support/cases.hpp"
+#include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan::test {
 namespace {
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 JointAngles any_joints(Random& random) {
   JointAngles joints;

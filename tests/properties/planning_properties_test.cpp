@@ -18,7 +18,7 @@
 namespace excavplan::test {
 namespace {
 
-PlannedDig any_dig(Random& random) {
+PlannedDig any_planned_dig(Random& random) {
   PlannedDig dig;
   dig.parameters.penetration_angle = random.uniform(0.2, 1.4);
   dig.parameters.penetration_length = random.uniform(0.1, 0.9);
@@ -47,8 +47,8 @@ Between any_between(Random& random) { return static_cast<Between>(random.index(4
 
 TEST(PlanningProperties, ADigBetweenTwoIsLinearOrOneOfThem) {
   for_cases([](Random& random) {
-    const PlannedDig a = any_dig(random);
-    const PlannedDig b = any_dig(random);
+    const PlannedDig a = any_planned_dig(random);
+    const PlannedDig b = any_planned_dig(random);
     const Between between = any_between(random);
     const double share = random.uniform();
     const PlannedDig found = dig_between(a, b, share, between);
@@ -137,7 +137,7 @@ PathLibrary any_library(Random& random) {
       PathLibraryEntry entry;
       entry.slope = -0.1 + 0.1 * s;
       entry.density_percent = 10.0 + 20.0 * d;
-      entry.dig = any_dig(random);
+      entry.dig = any_planned_dig(random);
       entry.evaluations = drawn_int(random, 0, 1000);
       const auto next = [&] {
         Interpolation to;
@@ -239,7 +239,8 @@ TEST(PlanningProperties, StartsOfLeastWorkKeepOffTheJointLimits) {
   int laid = 0;
   for_cases(
       [&](Random& random) {
-        const auto path = path_by(layout, any_dig(random).parameters, StartRule::Kind::least_work);
+        const auto path =
+            path_by(layout, any_planned_dig(random).parameters, StartRule::Kind::least_work);
         const auto* found = std::get_if<DigPath>(&path);
         if (found == nullptr) return;
         ++laid;

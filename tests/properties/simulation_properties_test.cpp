@@ -14,21 +14,12 @@
 #include "simulation/swath.hpp"
 #include "soil/earthmoving.hpp"
 #include "support/cases.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan::test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
-
-SoilKind loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
 
 CuttingWedge any_wedge(Random& random) {
   CuttingWedge wedge;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/ros_bytes.hpp"
 
@@ -293,7 +294,6 @@ TEST(RosMessages, OrganisedPointsWithPaddedRows) {
 }
 
 TEST(RosMessages, PointsAtTheOriginAndNanAreUnknown) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   const OwnMessage message(
       cloud_topic, cloud_bytes(0, "lidar", {{0.0, -0.0, 0.0}, {0.0, 0.0, 1.0}, {nan, 1.0, 1.0}}));
   const Points points = decode_points(file, message).points;

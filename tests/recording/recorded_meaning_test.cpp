@@ -17,17 +17,7 @@
 namespace excavplan::test {
 namespace {
 
-constexpr std::int64_t ms = 1000000;
-constexpr std::int64_t epoch = RecordingInMemory::epoch;
-const std::string cloud_type = "sensor_msgs/msg/PointCloud2";
-const std::string tf_type = "tf2_msgs/msg/TFMessage";
 constexpr bool may_be_right = true;
-
-void add_transform(RecordingInMemory& recording, std::int64_t time, TransformNumbers transform,
-                   const std::string& topic = "/tf", std::int64_t late = 0) {
-  transform.stamp = epoch + time;
-  recording.add(topic, tf_type, time + late, transform_bytes({transform}));
-}
 
 /// A machine that drives along x at 1 m/s for 60 s, and its lidar at 30 s, whose stamp is late by
 /// so much; transforms reach the recorder after `delay`.

@@ -18,13 +18,9 @@
 namespace excavplan::test {
 namespace {
 
-constexpr std::int64_t ms = 1000000;
-constexpr std::int64_t epoch = RecordingInMemory::epoch;
 const double nan_value = std::numeric_limits<double>::quiet_NaN();
-const std::string cloud_type = "sensor_msgs/msg/PointCloud2";
 const std::string image_type = "sensor_msgs/msg/Image";
 const std::string camera_type = "sensor_msgs/msg/CameraInfo";
-const std::string tf_type = "tf2_msgs/msg/TFMessage";
 const std::string joint_type = "sensor_msgs/msg/JointState";
 
 RecordingQuery query_of(const std::string& topic, std::optional<double> time = {},
@@ -42,12 +38,6 @@ RecordingInMemory recording_from_zero() {
 void add_cloud(RecordingInMemory& recording, std::int64_t time, const Points& points,
                std::size_t width = 0, const std::string& frame = "lidar") {
   recording.add("/points", cloud_type, time, cloud_bytes(epoch + time, frame, points, width));
-}
-
-void add_transform(RecordingInMemory& recording, std::int64_t time, TransformNumbers transform,
-                   const std::string& topic = "/tf") {
-  transform.stamp = epoch + time;
-  recording.add(topic, tf_type, time, transform_bytes({transform}));
 }
 
 std::string error_of_read(RecordingInMemory& recording, const RecordingQuery& query,

@@ -6,13 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::test {
 namespace {
 
-constexpr std::int64_t ms = 1000000;
-constexpr std::int64_t start = 1700000000000 * ms;
+constexpr std::int64_t millisecond = 1000000;
+constexpr std::int64_t start = 1700000000000 * millisecond;
 constexpr double half = 0.70710678118654752;
 
 StampedTransform link(const std::string& parent, const std::string& child,
@@ -46,7 +47,7 @@ std::string error_of_lookup(const TransformTree& tree, const std::string& target
   return error_about([&] { tree.lookup(target, source, start + time); }, "run.mcap");
 }
 
-void expect_near(const Eigen::Vector3d& found, const Eigen::Vector3d& expected) {
+void expect_at(const Eigen::Vector3d& found, const Eigen::Vector3d& expected) {
   EXPECT_LT((found - expected).norm(), 1e-12) << found.transpose() << " / " << expected.transpose();
 }
 
@@ -55,61 +56,64 @@ TEST(TransformTree, ChainsUpAndDown) {
   const TransformTree tree =
       tree_of({link("map", "base", {10.0, 0.0, 0.0}, {0.0, 0.0, half, half}),
                link("base", "lidar", {1.0, 0.0, 2.0}), link("base", "camera", {0.0, 3.0, 0.0})});
-  expect_near(put(tree, "map", "lidar", {5.0, 0.0, 0.0}), {10.0, 6.0, 2.0});
-  expect_near(put(tree, "lidar", "map", {10.0, 6.0, 2.0}), {5.0, 0.0, 0.0});
-  expect_near(put(tree, "camera", "lidar", {0.0, 0.0, 0.0}), {1.0, -3.0, 2.0});
-  expect_near(put(tree, "base", "base", {1.0, 2.0, 3.0}), {1.0, 2.0, 3.0});
-  expect_near(put(tree, "nowhere", "nowhere", {1.0, 2.0, 3.0}), {1.0, 2.0, 3.0});
+  expect_at(put(tree, "map", "lidar", {5.0, 0.0, 0.0}), {10.0, 6.0, 2.0});
+  expect_at(put(tree, "lidar", "map", {10.0, 6.0, 2.0}), {5.0, 0.0, 0.0});
+  expect_at(put(tree, "camera", "lidar", {0.0, 0.0, 0.0}), {1.0, -3.0, 2.0});
+  expect_at(put(tree, "base", "base", {1.0, 2.0, 3.0}), {1.0, 2.0, 3.0});
+  expect_at(put(tree, "nowhere", "nowhere", {1.0, 2.0, 3.0}), {1.0, 2.0, 3.0});
 }
 
 TEST(TransformTree, InterpolatesBetweenStamps) {
   // from 0 to 90 deg and from x = 0 to 4 within 0.8 s
   const TransformTree tree =
-      tree_of({at(800 * ms, link("map", "base", {4.0, 0.0, 0.0}, yaw(M_PI_2))),
+      tree_of({at(800 * millisecond, link("map", "base", {4.0, 0.0, 0.0}, yaw(M_PI_2))),
                at(0, link("map", "base"))});
   const double quarter = M_PI_2 / 4.0;
-  expect_near(put(tree, "map", "base", {1.0, 0.0, 0.0}, 200 * ms),
-              {1.0 + std::cos(quarter), std::sin(quarter), 0.0});
-  expect_near(put(tree, "map", "base", {1.0, 0.0, 0.0}, 400 * ms), {2.0 + half, half, 0.0});
-  expect_near(put(tree, "map", "base", {1.0, 0.0, 0.0}, 800 * ms), {4.0, 1.0, 0.0});
+  expect_at(put(tree, "map", "base", {1.0, 0.0, 0.0}, 200 * millisecond),
+            {1.0 + std::cos(quarter), std::sin(quarter), 0.0});
+  expect_at(put(tree, "map", "base", {1.0, 0.0, 0.0}, 400 * millisecond), {2.0 + half, half, 0.0});
+  expect_at(put(tree, "map", "base", {1.0, 0.0, 0.0}, 800 * millisecond), {4.0, 1.0, 0.0});
 }
 
 TEST(TransformTree, InterpolatesAlongTheShorterArcWhateverTheSignOfAQuaternion) {
   const TransformTree tree =
       tree_of({at(0, link("map", "base", {0.0, 0.0, 0.0}, yaw(0.2))),
-               at(500 * ms, link("map", "base", {0.0, 0.0, 0.0}, -yaw(0.6)))});
-  expect_near(put(tree, "map", "base", {1.0, 0.0, 0.0}, 250 * ms),
-              {std::cos(0.4), std::sin(0.4), 0.0});
+               at(500 * millisecond, link("map", "base", {0.0, 0.0, 0.0}, -yaw(0.6)))});
+  expect_at(put(tree, "map", "base", {1.0, 0.0, 0.0}, 250 * millisecond),
+            {std::cos(0.4), std::sin(0.4), 0.0});
 }
 
 TEST(TransformTree, HoldsForATenthOfASecondAndNoLonger) {
-  const TransformTree tree = tree_of({at(1000 * ms, link("map", "base", {1.0, 0.0, 0.0})),
-                                      at(1500 * ms, link("map", "base", {2.0, 0.0, 0.0}))});
-  expect_near(put(tree, "map", "base", {0.0, 0.0, 0.0}, 900 * ms), {1.0, 0.0, 0.0});
-  expect_near(put(tree, "map", "base", {0.0, 0.0, 0.0}, 1600 * ms), {2.0, 0.0, 0.0});
+  const TransformTree tree =
+      tree_of({at(1000 * millisecond, link("map", "base", {1.0, 0.0, 0.0})),
+               at(1500 * millisecond, link("map", "base", {2.0, 0.0, 0.0}))});
+  expect_at(put(tree, "map", "base", {0.0, 0.0, 0.0}, 900 * millisecond), {1.0, 0.0, 0.0});
+  expect_at(put(tree, "map", "base", {0.0, 0.0, 0.0}, 1600 * millisecond), {2.0, 0.0, 0.0});
   EXPECT_EQ(
-      error_of_lookup(tree, "map", "base", 899 * ms),
+      error_of_lookup(tree, "map", "base", 899 * millisecond),
       "transform of 'base' in 'map' at 0.899 s: found it from 1.000 s to 1.500 s, expected it "
       "at that time");
-  EXPECT_NE(error_of_lookup(tree, "map", "base", 1601 * ms), "no error");
-  EXPECT_NE(error_of_lookup(tree, "base", "map", 1601 * ms), "no error");
+  EXPECT_NE(error_of_lookup(tree, "map", "base", 1601 * millisecond), "no error");
+  EXPECT_NE(error_of_lookup(tree, "base", "map", 1601 * millisecond), "no error");
 }
 
 TEST(TransformTree, DoesNotGuessWhatHappenedInALongGap) {
-  const TransformTree moved = tree_of(
-      {at(0, link("map", "base")), at(1100 * ms, link("map", "base", {0.0, 0.0, 0.0}, yaw(0.01)))});
-  EXPECT_EQ(error_of_lookup(moved, "map", "base", 500 * ms),
+  const TransformTree moved =
+      tree_of({at(0, link("map", "base")),
+               at(1100 * millisecond, link("map", "base", {0.0, 0.0, 0.0}, yaw(0.01)))});
+  EXPECT_EQ(error_of_lookup(moved, "map", "base", 500 * millisecond),
             "transform of 'base' in 'map' at 0.500 s: found it at 0.000 s and at 1.100 s, where it "
             "had moved, expected it every second");
-  const TransformTree stood = tree_of({at(0, link("map", "base", {1.0, 0.0, 0.0})),
-                                       at(60000 * ms, link("map", "base", {1.004, 0.0, 0.0}))});
-  expect_near(put(stood, "map", "base", {0.0, 0.0, 0.0}, 30000 * ms), {1.002, 0.0, 0.0});
+  const TransformTree stood =
+      tree_of({at(0, link("map", "base", {1.0, 0.0, 0.0})),
+               at(60000 * millisecond, link("map", "base", {1.004, 0.0, 0.0}))});
+  expect_at(put(stood, "map", "base", {0.0, 0.0, 0.0}, 30000 * millisecond), {1.002, 0.0, 0.0});
 }
 
 TEST(TransformTree, StaticOnesHoldAtAllTimesTheLastOneCounts) {
   const TransformTree tree =
       tree_of({link("base", "lidar", {1.0, 0.0, 0.0}), link("base", "lidar", {2.0, 0.0, 0.0})});
-  expect_near(put(tree, "base", "lidar", {0.0, 0.0, 0.0}, -100000 * ms), {2.0, 0.0, 0.0});
+  expect_at(put(tree, "base", "lidar", {0.0, 0.0, 0.0}, -100000 * millisecond), {2.0, 0.0, 0.0});
 }
 
 TEST(TransformTree, MissingChainsNameWhereTheyBreak) {
@@ -131,7 +135,7 @@ TEST(TransformTree, TwoParentsAreRefusedWhereTheyMatter) {
       tree_of({link("map", "base"), link("odom", "base"), link("base", "lidar", {1.0, 0.0, 0.0})});
   EXPECT_EQ(error_of_lookup(tree, "map", "lidar"),
             "found transforms of 'base' in 'map' and in 'odom', expected one parent of each frame");
-  expect_near(put(tree, "base", "lidar", {0.0, 0.0, 0.0}), {1.0, 0.0, 0.0});
+  expect_at(put(tree, "base", "lidar", {0.0, 0.0, 0.0}), {1.0, 0.0, 0.0});
 }
 
 TEST(TransformTree, CyclesAreRefused) {
@@ -149,7 +153,6 @@ TEST(TransformTree, WhatIsNoMotionIsRefused) {
       error_of_lookup(zero, "map", "base"),
       "transform of 'base' in 'map' at 0.000 s: found the quaternion and translation 0 0 0 0 1 "
       "2 3, expected a quaternion of length 1 and a finite translation");
-  const double nan = std::nan("");
   EXPECT_NE(error_of_lookup(tree_of({link("map", "base", {nan, 0.0, 0.0})}), "map", "base"),
             "no error");
   EXPECT_NE(error_of_lookup(tree_of({link("map", "base", {0.0, 0.0, 0.0}, {nan, 0.0, 0.0, 1.0})}),
@@ -158,15 +161,15 @@ TEST(TransformTree, WhatIsNoMotionIsRefused) {
   // a quaternion that was rounded is a rotation all the same
   const TransformTree rounded =
       tree_of({link("map", "base", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.707, 0.707})});
-  expect_near(put(rounded, "map", "base", {1.0, 0.0, 0.0}), {0.0, 1.0, 0.0});
+  expect_at(put(rounded, "map", "base", {1.0, 0.0, 0.0}), {0.0, 1.0, 0.0});
 }
 
 TEST(TransformTree, MovedBeyondOneCentimetreOrATenthOfADegree) {
   const auto moved = [](const Eigen::Vector3d& shift, double turn) {
-    const TransformTree tree =
-        tree_of({at(0, link("map", "base")), at(400 * ms, link("map", "base", shift, yaw(turn))),
-                 at(800 * ms, link("map", "base")), link("base", "lidar")});
-    return tree.moved("", "lidar", start + 100 * ms, start + 700 * ms);
+    const TransformTree tree = tree_of(
+        {at(0, link("map", "base")), at(400 * millisecond, link("map", "base", shift, yaw(turn))),
+         at(800 * millisecond, link("map", "base")), link("base", "lidar")});
+    return tree.moved("", "lidar", start + 100 * millisecond, start + 700 * millisecond);
   };
   EXPECT_FALSE(moved({0.0, 0.0, 0.0}, 0.0));
   EXPECT_FALSE(moved({0.009, 0.0, 0.0}, 0.0017));
@@ -176,11 +179,11 @@ TEST(TransformTree, MovedBeyondOneCentimetreOrATenthOfADegree) {
 
 TEST(TransformTree, MovesOnlyInTheFramesBetween) {
   const TransformTree tree =
-      tree_of({at(0, link("map", "base")), at(500 * ms, link("map", "base", {1.0, 0.0, 0.0})),
-               link("base", "lidar")});
-  EXPECT_TRUE(tree.moved("", "lidar", start, start + 500 * ms));
-  EXPECT_TRUE(tree.moved("map", "lidar", start, start + 500 * ms));
-  EXPECT_FALSE(tree.moved("base", "lidar", start, start + 500 * ms));
+      tree_of({at(0, link("map", "base")),
+               at(500 * millisecond, link("map", "base", {1.0, 0.0, 0.0})), link("base", "lidar")});
+  EXPECT_TRUE(tree.moved("", "lidar", start, start + 500 * millisecond));
+  EXPECT_TRUE(tree.moved("map", "lidar", start, start + 500 * millisecond));
+  EXPECT_FALSE(tree.moved("base", "lidar", start, start + 500 * millisecond));
 }
 
 TEST(TransformTree, LeavesAreWhatNothingHangsOn) {
@@ -195,7 +198,7 @@ TEST(TransformTree, LeavesAreWhatNothingHangsOn) {
 TEST(TransformTree, TimesFarAwayAreNamedAsTheyAre) {
   const TransformTree tree = tree_of({at(0, link("map", "base"))});
   EXPECT_EQ(
-      error_of_lookup(tree, "map", "base", 12500 * ms - start),
+      error_of_lookup(tree, "map", "base", 12500 * millisecond - start),
       "transform of 'base' in 'map' at 12.500 s since 1970: found it from 0.000 s to 0.000 s, "
       "expected it at that time");
 }

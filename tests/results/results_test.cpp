@@ -20,19 +20,13 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/json.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
 
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
-
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
+using test::loam;
+using test::zx120;
 
 const DigScene& scene() {
   static const DigScene dug = [] {

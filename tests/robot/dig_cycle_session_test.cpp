@@ -28,7 +28,7 @@ const std::string tf_type = "tf2_msgs/msg/TFMessage";
 const std::string joints_type = "sensor_msgs/msg/JointState";
 constexpr std::int64_t now = 1700000000000000000;  // [ns]
 
-DigCycleSettings settings_of(std::size_t scans = 1) {
+DigCycleSettings settings_with(std::size_t scans = 1) {
   static const DigCycleSettings usual = cycle_settings();
   DigCycleSettings settings = usual;
   settings.scans = scans;
@@ -68,13 +68,13 @@ Points ground() {
   return points;
 }
 
-bool has(const std::vector<Warning>& warnings, const std::string& code) {
+bool warns_of(const std::vector<Warning>& warnings, const std::string& code) {
   return std::any_of(warnings.begin(), warnings.end(),
                      [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 TEST(DigCycleSession, AnswersAsTheLibraryDoesForTheSameScans) {
-  const DigCycleSettings settings = settings_of();
+  const DigCycleSettings settings = settings_with();
   DensityEstimate direct;
   Scan after;
   {
@@ -101,19 +101,19 @@ TEST(DigCycleSession, AnswersAsTheLibraryDoesForTheSameScans) {
 }
 
 TEST(DigCycleSession, PlansOnTheGroundAsScanned) {
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   drive_quickstart(session);
   session.estimate();
   const CyclePlan answer = session.plan();
   ASSERT_TRUE(answer.plan.dig);
   EXPECT_FALSE(answer.density_is_stated);
-  EXPECT_FALSE(has(answer.warnings, "level_ground"));
-  EXPECT_TRUE(has(answer.warnings, "posture_unknown"));
-  const Machine machine = settings_of().machine;
+  EXPECT_FALSE(warns_of(answer.warnings, "level_ground"));
+  EXPECT_TRUE(warns_of(answer.warnings, "posture_unknown"));
+  const Machine machine = settings_with().machine;
   Scan after;
   after.clouds = {std::make_shared<Cloud>(quickstart("after"))};
   const Terrain terrain = terrain_from_scan(after, planning_extent(machine), 0.05).terrain;
-  const DigPlan direct = plan_dig(machine, settings_of().soil, session.density(), terrain);
+  const DigPlan direct = plan_dig(machine, settings_with().soil, session.density(), terrain);
   EXPECT_EQ(answer.plan.dig->payload_mass, direct.dig->payload_mass);
   const auto json = nlohmann::json::parse(to_json(answer));
   EXPECT_EQ(json["path"]["start_x_m"], direct.dig->start_x);
@@ -137,19 +137,19 @@ TEST(DigCycleSession, PlansOnTheGroundAsScanned) {
 
 TEST(DigCycleSession, TellsThatTheDigIsNotTheOneItPlanned) {
   for (const bool as_planned : {true, false}) {
-    DigCycleSettings settings = settings_of();
+    DigCycleSettings settings = settings_with();
     settings.digs_as_planned = as_planned;
     DigCycleSession session(settings);
     session.plan();
     drive_quickstart(session);
     const CycleEstimate answer = session.estimate();  // the quickstart's dig is another one
-    EXPECT_EQ(has(answer.warnings, "dug_path_doubtful"), as_planned);
+    EXPECT_EQ(warns_of(answer.warnings, "dug_path_doubtful"), as_planned);
     EXPECT_EQ(answer.adopted, !as_planned);
   }
 }
 
 TEST(DigCycleSession, KeepsThePreviousDensityWhereTheEstimateIsNotTrusted) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.density = GroundDensity(33.0, 4.0);
   DigCycleSession session(settings);
   send(session, cloud_bytes(now, "site", quickstart("before").points));
@@ -162,12 +162,12 @@ TEST(DigCycleSession, KeepsThePreviousDensityWhereTheEstimateIsNotTrusted) {
   const CyclePlan plan = session.plan();
   EXPECT_EQ(plan.density.percent, 33.0);
   EXPECT_TRUE(plan.density_is_stated);
-  EXPECT_TRUE(has(plan.warnings, "previous_density"));
+  EXPECT_TRUE(warns_of(plan.warnings, "previous_density"));
   EXPECT_NE(to_json(plan).find("previous_density"), std::string::npos);
 }
 
 TEST(DigCycleSession, GoesThroughTheCycle) {
-  DigCycleSession session(settings_of(2));
+  DigCycleSession session(settings_with(2));
   EXPECT_EQ(error_of([&] { session.start_dig(); }), "the dig begins, but no scan came before it");
   EXPECT_EQ(error_of([&] { session.end_dig(); }), "the dig is over, but none had begun");
   EXPECT_EQ(error_of([&] { session.estimate(); }),
@@ -194,7 +194,7 @@ TEST(DigCycleSession, GoesThroughTheCycle) {
 }
 
 TEST(DigCycleSession, PutsScansIntoTheSiteFrameByTransforms) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.site_frame = "base";
   DigCycleSession session(settings);
   send(session, cloud_bytes(now, "lidar", ground()));
@@ -215,7 +215,7 @@ struct SensedSession {
   SensedSession() : session(settings()) {}
 
   static DigCycleSettings settings() {
-    DigCycleSettings settings = settings_of();
+    DigCycleSettings settings = settings_with();
     settings.site_frame = "base";
     return settings;
   }
@@ -267,18 +267,19 @@ TEST(DigCycleSession, FramesOutliveAClockThatIsSetBack) {
 
 TEST(DigCycleSession, AveragesOrganisedMessagesOfASensorThatStood) {
   for (const std::size_t width : {ground_width, ground_width * ground_width}) {
-    DigCycleSession session(settings_of(3));
+    DigCycleSession session(settings_with(3));
     const std::string cloud = cloud_bytes(now, "site", ground(), width);
     for (int i = 0; i < 3; ++i) send(session, cloud);
     session.start_dig();
     session.end_dig();
     for (int i = 0; i < 3; ++i) send(session, cloud);
-    EXPECT_EQ(has(session.estimate().warnings, "not_averaged"), width != ground_width) << width;
+    EXPECT_EQ(warns_of(session.estimate().warnings, "not_averaged"), width != ground_width)
+        << width;
   }
 }
 
 TEST(DigCycleSession, MotionBeginsWhereTheJointsStand) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   RobotJoints& robot = settings.machine.robot_joints;
   robot[1] = {"stick", -1.0, 0.4};
   DigCycleSession session(settings);
@@ -288,14 +289,14 @@ TEST(DigCycleSession, MotionBeginsWhereTheJointsStand) {
     send(session, joint_bytes(now, named), "/joint_states", joints_type);
   };
   CyclePlan plan = session.plan();
-  EXPECT_TRUE(has(plan.warnings, "posture_unknown"));
+  EXPECT_TRUE(warns_of(plan.warnings, "posture_unknown"));
   const JointMotion above = plan.motion;
   const std::vector<double> present = {-0.6, 0.4 - 1.6, 0.5, 0.7};
   stand(present);
   plan = session.plan();
-  EXPECT_FALSE(has(plan.warnings, "posture_unknown"));
-  EXPECT_TRUE(has(plan.warnings, "level_ground"));
-  EXPECT_FALSE(has(plan.warnings, "no_motion"));
+  EXPECT_FALSE(warns_of(plan.warnings, "posture_unknown"));
+  EXPECT_TRUE(warns_of(plan.warnings, "level_ground"));
+  EXPECT_FALSE(warns_of(plan.warnings, "no_motion"));
   EXPECT_EQ(plan.motion.names[1], "stick");
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(plan.motion.points.front().positions[i], present[i], 1e-12) << i;
@@ -306,7 +307,7 @@ TEST(DigCycleSession, MotionBeginsWhereTheJointsStand) {
 
 /// The swing leaves the strip that is planned on.
 TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.whole_cycle = true;
   const auto planned_on = [&](double half_width, double wall) {
     Points points;
@@ -320,17 +321,18 @@ TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
     return session.plan();
   };
   const CyclePlan strip = planned_on(1.5, 0.0);
-  EXPECT_TRUE(has(strip.warnings, "unseen_way"));
+  EXPECT_TRUE(warns_of(strip.warnings, "unseen_way"));
   EXPECT_FALSE(strip.trustworthy);
   EXPECT_FALSE(strip.motion.points.empty());
-  EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion"));
-  EXPECT_FALSE(has(planned_on(9.5, 0.0).warnings, "no_motion"));
+  EXPECT_TRUE(warns_of(planned_on(9.5, 9.0).warnings, "no_motion"));
+  EXPECT_FALSE(warns_of(planned_on(9.5, 0.0).warnings, "no_motion"));
   settings.surroundings = level_swing_ground(settings.machine);
-  EXPECT_FALSE(has(planned_on(1.5, 0.0).warnings, "unseen_way"));
-  EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion")) << "the present scan counts first";
+  EXPECT_FALSE(warns_of(planned_on(1.5, 0.0).warnings, "unseen_way"));
+  EXPECT_TRUE(warns_of(planned_on(9.5, 9.0).warnings, "no_motion"))
+      << "the present scan counts first";
   settings.surroundings->bank.z += 1.0;
   const CyclePlan shifted = planned_on(1.5, 0.0);
-  EXPECT_TRUE(has(shifted.warnings, "surroundings_differ"));
+  EXPECT_TRUE(warns_of(shifted.warnings, "surroundings_differ"));
   EXPECT_FALSE(shifted.trustworthy);
   settings.surroundings->bank.cell_size *= 2.0;
   EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
@@ -341,7 +343,7 @@ TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
 }
 
 TEST(DigCycleSession, SaysWhyThereIsNoMotion) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   const JointLimits& boom = settings.machine.limits[0];
   DigCycleSession session(settings);
   const auto motion_from = [&](double boom_angle) {
@@ -354,10 +356,10 @@ TEST(DigCycleSession, SaysWhyThereIsNoMotion) {
     return session.plan();
   };
   const CyclePlan at_limit = motion_from(boom.lower - 0.01);
-  EXPECT_FALSE(has(at_limit.warnings, "no_motion"));
+  EXPECT_FALSE(warns_of(at_limit.warnings, "no_motion"));
   EXPECT_EQ(at_limit.motion.points.front().positions[0], boom.lower);
   const CyclePlan beyond = motion_from(boom.lower - 0.3);
-  ASSERT_TRUE(has(beyond.warnings, "no_motion"));
+  ASSERT_TRUE(warns_of(beyond.warnings, "no_motion"));
   EXPECT_TRUE(beyond.plan.dig);
   EXPECT_FALSE(beyond.trustworthy);
   EXPECT_TRUE(beyond.motion.points.empty());
@@ -372,7 +374,7 @@ void scan(DigCycleSession& session, std::int64_t stamp,
 }
 
 TEST(DigCycleSession, PointsOfTheDigThatComeAfterItDoNotCount) {
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   scan(session, now);
   session.start_dig(now + second);
   session.end_dig(now + 20 * second);
@@ -385,14 +387,14 @@ TEST(DigCycleSession, PointsOfTheDigThatComeAfterItDoNotCount) {
   scan(session, now + 20 * second);
   EXPECT_EQ(session.stage(), CycleStage::done);
   const CycleEstimate answer = session.estimate();
-  EXPECT_TRUE(has(answer.warnings, "early_points"));
-  EXPECT_FALSE(has(answer.warnings, "not_stamped"));
+  EXPECT_TRUE(warns_of(answer.warnings, "early_points"));
+  EXPECT_FALSE(warns_of(answer.warnings, "not_stamped"));
   session.start_dig(now + 30 * second);
   EXPECT_EQ(session.early_scans(), 0U);
 }
 
 TEST(DigCycleSession, TheMarkOfTheBeginHoldsIfTheEndHasNoTime) {
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   scan(session, now);
   session.start_dig(now + second);
   session.end_dig();
@@ -404,7 +406,7 @@ TEST(DigCycleSession, TheMarkOfTheBeginHoldsIfTheEndHasNoTime) {
 
 TEST(DigCycleSession, PointsWithoutAStampCountAndAreTold) {
   for (const bool is_received : {true, false}) {
-    DigCycleSession session(settings_of());
+    DigCycleSession session(settings_with());
     const auto at = [&](int seconds) {
       return is_received ? std::optional(now + seconds * second) : std::nullopt;
     };
@@ -413,14 +415,14 @@ TEST(DigCycleSession, PointsWithoutAStampCountAndAreTold) {
     session.end_dig(now + 10 * second);
     scan(session, 0, at(11));
     ASSERT_EQ(session.stage(), CycleStage::done);
-    EXPECT_TRUE(has(session.estimate().warnings, "not_stamped"));
+    EXPECT_TRUE(warns_of(session.estimate().warnings, "not_stamped"));
   }
 }
 
 TEST(DigCycleSession, StampsOfAnotherClockAreComparedByTheirDelay) {
   constexpr std::int64_t year = 365 * 86400 * second;
   for (const std::int64_t offset : {-year, year}) {
-    DigCycleSession session(settings_of());
+    DigCycleSession session(settings_with());
     const auto at = [&](int taken, int came) {
       scan(session, now + offset + taken * second, now + came * second);
     };
@@ -435,7 +437,7 @@ TEST(DigCycleSession, StampsOfAnotherClockAreComparedByTheirDelay) {
 }
 
 TEST(DigCycleSession, AStampThatIsWrongIsForgotten) {
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   scan(session, now + 1'000'000 * second, now);
   session.start_dig(now + second);
   session.end_dig(now + 2 * second);
@@ -448,7 +450,7 @@ TEST(DigCycleSession, AStampThatIsWrongIsForgotten) {
 }
 
 TEST(DigCycleSession, AMarkEndsWithItsClock) {
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   scan(session, now, now);
   session.start_dig(now + second);
   session.end_dig(now + 60 * second);
@@ -469,7 +471,7 @@ TEST(DigCycleSession, TimesAtTheEndsOfTheirRangeAreTimesToo) {
   joints.add("boom", {latest, 2.0});
   EXPECT_EQ(joints.nearest("boom", earliest)->position, 2.0) << "the first is too old to be kept";
   for (const std::int64_t received : {earliest, latest}) {
-    DigCycleSession session(settings_of());
+    DigCycleSession session(settings_with());
     scan(session, now, received);
     session.start_dig(received);
     session.end_dig(earliest);
@@ -497,7 +499,7 @@ struct JointTeller {
 
 TEST(DigCycleSession, JointStatesThatEndedAreNotWhereTheMachineStands) {
   const std::vector<double> angles = {-0.6, 1.6, 0.5, 0.0};
-  const DigCycleSettings settings = settings_of();
+  const DigCycleSettings settings = settings_with();
   for (const bool is_received : {true, false}) {
     DigCycleSession session(settings);
     const JointTeller tell{settings, session};
@@ -510,7 +512,7 @@ TEST(DigCycleSession, JointStatesThatEndedAreNotWhereTheMachineStands) {
     scan(session, now + second + second / 100, at(now + second + second / 100));
     const CyclePlan plan = session.plan();
     EXPECT_FALSE(plan.posture_known);
-    ASSERT_TRUE(has(plan.warnings, "posture_unknown"));
+    ASSERT_TRUE(warns_of(plan.warnings, "posture_unknown"));
     EXPECT_NE(to_json(plan).find("no joint states of boom_joint came within 1 s"),
               std::string::npos);
     tell(now + 2 * second, angles, at(now + 2 * second));
@@ -519,7 +521,7 @@ TEST(DigCycleSession, JointStatesThatEndedAreNotWhereTheMachineStands) {
 }
 
 TEST(DigCycleSession, TheAgeOfJointStatesIsThatAtThePlan) {
-  const DigCycleSettings settings = settings_of();
+  const DigCycleSettings settings = settings_with();
   DigCycleSession session(settings);
   JointTeller{settings, session}(now, {-0.6, 1.6, 0.5, 0.0}, now);
   EXPECT_TRUE(session.plan(now + second).posture_known);
@@ -527,7 +529,7 @@ TEST(DigCycleSession, TheAgeOfJointStatesIsThatAtThePlan) {
 }
 
 TEST(DigCycleSession, AMachineThatMovesOrMayMoveIsNotTrusted) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.level_ground = true;
   settings.density = GroundDensity(40.0, 2.0);
   const auto plan_after = [&](const std::vector<std::pair<double, double>>& boom) {
@@ -544,23 +546,25 @@ TEST(DigCycleSession, AMachineThatMovesOrMayMoveIsNotTrusted) {
   const CyclePlan moves = plan_after({{0.0, -0.62}, {0.25, -0.6}, {0.5, -0.6}});
   EXPECT_FALSE(moves.trustworthy);
   EXPECT_NE(to_json(moves).find("boom_joint turned by 0.02"), std::string::npos);
-  EXPECT_TRUE(has(plan_after({{0.0, -0.6}, {0.25, -0.62}, {0.5, -0.6}}).warnings, "not_standing"))
+  EXPECT_TRUE(
+      warns_of(plan_after({{0.0, -0.6}, {0.25, -0.62}, {0.5, -0.6}}).warnings, "not_standing"))
       << "to and fro";
-  EXPECT_FALSE(has(plan_after({{-1.0, 0.0}, {0.0, -0.6}, {0.5, -0.6}}).warnings, "not_standing"))
+  EXPECT_FALSE(
+      warns_of(plan_after({{-1.0, 0.0}, {0.0, -0.6}, {0.5, -0.6}}).warnings, "not_standing"))
       << "before that";
   const CyclePlan unknown = plan_after({{0.0, -0.6}, {0.4, -0.6}});
   EXPECT_FALSE(unknown.trustworthy);
-  EXPECT_TRUE(has(unknown.warnings, "not_standing"));
+  EXPECT_TRUE(warns_of(unknown.warnings, "not_standing"));
 }
 
 /// People and machines move: a scan holds for a minute, and a motion no longer.
 TEST(DigCycleSession, AScanThatIsOldEndsTrustAndItsMotionExpires) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.density = GroundDensity(40.0, 2.0);
   DigCycleSession session(settings);
   send(session, cloud_bytes(now, "site", ground()));
   const CyclePlan young = session.plan(now + 59 * second);
-  EXPECT_FALSE(has(young.warnings, "scan_old"));
+  EXPECT_FALSE(warns_of(young.warnings, "scan_old"));
   ASSERT_TRUE(young.scan_age && young.stamp);
   EXPECT_NEAR(*young.scan_age, 59.0, 1e-6);
   EXPECT_EQ(young.stamp->scanned, now);
@@ -570,26 +574,26 @@ TEST(DigCycleSession, AScanThatIsOldEndsTrustAndItsMotionExpires) {
     session.confirm_start(plan, time);
     return plan;
   };
-  EXPECT_FALSE(has(confirmed(now + 60 * second).warnings, "stale_plan"));
+  EXPECT_FALSE(warns_of(confirmed(now + 60 * second).warnings, "stale_plan"));
   const CyclePlan stale = confirmed(now + 61 * second);
-  EXPECT_TRUE(has(stale.warnings, "stale_plan"));
+  EXPECT_TRUE(warns_of(stale.warnings, "stale_plan"));
   EXPECT_FALSE(stale.trustworthy);
   const CyclePlan old = session.plan(now + 61 * second);
-  EXPECT_TRUE(has(old.warnings, "scan_old"));
+  EXPECT_TRUE(warns_of(old.warnings, "scan_old"));
   EXPECT_FALSE(old.trustworthy);
   EXPECT_NE(to_json(old).find("\"scan_age_s\""), std::string::npos);
 }
 
 /// Of a motion of a file, too.
 TEST(DigCycleSession, AMotionOfAnotherPlanIsRefused) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.density = GroundDensity(40.0, 2.0);
   settings.site_from_scan(0, 3) = 0.5;
   DigCycleSession session(settings);
   send(session, cloud_bytes(now, "site", ground()));
   const CyclePlan plan = session.plan(now);
   const auto refused = [&](const std::optional<PlanStamp>& stamp) {
-    return has(session.doubts_of(stamp, now), "foreign_plan");
+    return warns_of(session.doubts_of(stamp, now), "foreign_plan");
   };
   ASSERT_TRUE(plan.stamp);
   EXPECT_FALSE(refused(plan.stamp));
@@ -605,7 +609,7 @@ TEST(DigCycleSession, AMotionOfAnotherPlanIsRefused) {
 }
 
 TEST(DigCycleSession, AMotionIsNotTrustedOnceTheMachineLeftItsStart) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.level_ground = true;
   settings.density = GroundDensity(40.0, 2.0);
   DigCycleSession session(settings);
@@ -626,7 +630,7 @@ TEST(DigCycleSession, AMotionIsNotTrustedOnceTheMachineLeftItsStart) {
   EXPECT_TRUE(confirmed(1.5).trustworthy);
   const CyclePlan silent = confirmed(61.0);
   EXPECT_FALSE(silent.trustworthy) << "joint states ended while it planned";
-  EXPECT_TRUE(has(silent.warnings, "start_left"));
+  EXPECT_TRUE(warns_of(silent.warnings, "start_left"));
   at(60.0, 0.405);
   EXPECT_TRUE(confirmed(60.0).trustworthy);
   at(61.0, 0.42);
@@ -637,39 +641,39 @@ TEST(DigCycleSession, AMotionIsNotTrustedOnceTheMachineLeftItsStart) {
 
 TEST(DigCycleSession, APlanOnGroundThatIsNotThePresentOneIsNotTrusted) {
   for (const bool is_level : {true, false}) {
-    DigCycleSettings settings = settings_of();
+    DigCycleSettings settings = settings_with();
     settings.density = GroundDensity(40.0, 2.0);
     settings.level_ground = is_level;
     const CyclePlan plan = DigCycleSession(settings).plan();
-    EXPECT_TRUE(has(plan.warnings, "level_ground"));
+    EXPECT_TRUE(warns_of(plan.warnings, "level_ground"));
     EXPECT_EQ(plan.trustworthy, is_level) << to_json(plan);
   }
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   scan(session, now);
-  EXPECT_FALSE(has(session.plan().warnings, "ground_before_dig"));
+  EXPECT_FALSE(warns_of(session.plan().warnings, "ground_before_dig"));
   EXPECT_NE(error_of([&] { session.estimate(); }), "no error");
   EXPECT_FALSE(session.plan().previous_density) << "nothing was dug";
   session.start_dig();
   for (const bool is_over : {false, true}) {
     if (is_over) session.end_dig();
     const CyclePlan plan = session.plan();
-    EXPECT_TRUE(has(plan.warnings, "ground_before_dig"));
+    EXPECT_TRUE(warns_of(plan.warnings, "ground_before_dig"));
     EXPECT_FALSE(plan.trustworthy);
     EXPECT_NE(error_of([&] { session.estimate(); }), "no error");
     EXPECT_TRUE(session.plan().previous_density);
   }
   scan(session, now + second);
-  EXPECT_FALSE(has(session.plan().warnings, "ground_before_dig"));
+  EXPECT_FALSE(warns_of(session.plan().warnings, "ground_before_dig"));
 }
 
 TEST(DigCycleSession, PlansTellWhatTheirSettingsAreMadeOf) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.warnings = {{WarningCode::urdf_scaled, "numbers are those of the zx120", false}};
-  EXPECT_TRUE(has(DigCycleSession(settings).plan().warnings, "urdf_scaled"));
+  EXPECT_TRUE(warns_of(DigCycleSession(settings).plan().warnings, "urdf_scaled"));
 }
 
 TEST(DigCycleSession, TheNewestJointStatesAreWhereTheMachineStands) {
-  const DigCycleSettings settings = settings_of();
+  const DigCycleSettings settings = settings_with();
   DigCycleSession session(settings);
   const JointTeller tell{settings, session};
   tell(now, {-0.6, 1.6, 0.5, 0.0}, now);  // then by a clock that is half a second ahead
@@ -679,7 +683,7 @@ TEST(DigCycleSession, TheNewestJointStatesAreWhereTheMachineStands) {
 
 TEST(DigCycleSession, JointStatesMayHaveNoStampAndAnyClock) {
   const std::vector<double> angles = {-0.6, 1.6, 0.5, 0.0};
-  const DigCycleSettings settings = settings_of();
+  const DigCycleSettings settings = settings_with();
   for (const std::int64_t stamp : {std::int64_t{0}, 7 * second}) {
     DigCycleSession session(settings);
     const JointTeller tell{settings, session};
@@ -692,7 +696,7 @@ TEST(DigCycleSession, JointStatesMayHaveNoStampAndAnyClock) {
 }
 
 TEST(DigCycleSession, ThePostureOfPointsIsTheOneNearestInTime) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.machine_in_view = true;
   const JointAngles raised(-0.6, 1.6, 0.5);
   const std::vector<double> then = {-0.6, 1.6, 0.5, 0.0}, soon = {-0.6, 1.6, 0.5, 1.5};
@@ -729,12 +733,12 @@ TEST(DigCycleSession, ThePostureOfPointsIsTheOneNearestInTime) {
 }
 
 TEST(DigCycleSession, ASearchEndsInTime) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.plan.method = PlanMethod::search;
   settings.search_seconds = 1e-9;
   const CyclePlan plan = DigCycleSession(settings).plan();
   EXPECT_TRUE(plan.plan.stopped);
-  EXPECT_TRUE(has(plan.warnings, "search_stopped"));
+  EXPECT_TRUE(warns_of(plan.warnings, "search_stopped"));
   EXPECT_LT(plan.plan.evaluations, 100);
   EXPECT_TRUE(plan.plan.dig || !plan.plan.reason.empty());
   settings.search_seconds = 0.0;
@@ -743,7 +747,7 @@ TEST(DigCycleSession, ASearchEndsInTime) {
 }
 
 TEST(DigCycleSession, MachineInViewNeedsJointStates) {
-  DigCycleSettings settings = settings_of();
+  DigCycleSettings settings = settings_with();
   settings.machine_in_view = true;
   DigCycleSession session(settings);
   drive_quickstart(session);
@@ -751,7 +755,7 @@ TEST(DigCycleSession, MachineInViewNeedsJointStates) {
 }
 
 TEST(DigCycleSession, RefusesDamagedMessagesAndStaysAsItWas) {
-  DigCycleSession session(settings_of());
+  DigCycleSession session(settings_with());
   const std::string good = cloud_bytes(now, "site", ground());
   send(session, good);
   for (std::size_t length = 0; length < good.size(); length += 1 + length / 8) {
@@ -767,11 +771,11 @@ TEST(DigCycleSession, RefusesDamagedMessagesAndStaysAsItWas) {
 }
 
 TEST(DigCycleSession, ChecksItsSettings) {
-  EXPECT_EQ(error_of([] { DigCycleSession(settings_of(0)); }), "scans is 0, must be in 1 .. 100");
-  DigCycleSettings settings = settings_of();
+  EXPECT_EQ(error_of([] { DigCycleSession(settings_with(0)); }), "scans is 0, must be in 1 .. 100");
+  DigCycleSettings settings = settings_with();
   settings.site_from_scan(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(error_of([&] { DigCycleSession session(settings); }), "no error");
-  settings = settings_of();
+  settings = settings_with();
   settings.oldest_joints = 0.0;
   EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
             "oldest_joints [s] is 0, must be above 0");
@@ -779,7 +783,7 @@ TEST(DigCycleSession, ChecksItsSettings) {
 
 TEST(DigCycleSession, ChecksWhatWouldFailInEveryPlan) {
   const auto error_with = [](const auto& change) {
-    DigCycleSettings settings = settings_of();
+    DigCycleSettings settings = settings_with();
     change(settings);
     return error_of([&] { DigCycleSession session(settings); });
   };

@@ -15,9 +15,9 @@
 namespace excavplan::test {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;          // [ns]
-constexpr std::int64_t begin = 1'700'000'000 * second;  // [ns]
-constexpr double truth = 40.0;                          // of the density [%]
+constexpr std::int64_t one_second = 1'000'000'000;          // [ns]
+constexpr std::int64_t begin = 1'700'000'000 * one_second;  // [ns]
+constexpr double truth = 40.0;                              // of the density [%]
 DigCycleSettings settings_on(const std::string& site) {
   static const DigCycleSettings usual = cycle_settings();
   DigCycleSettings settings = usual;
@@ -43,7 +43,7 @@ class Machinery {
     session.take({"/points",
                   "sensor_msgs/msg/PointCloud2",
                   true,
-                  cloud_bytes(begin + scans_ * second, "map", points),
+                  cloud_bytes(begin + scans_ * one_second, "map", points),
                   {}});
   }
   /// Drives a plan.

@@ -3,7 +3,6 @@
 #include <excavplan/scans/machine_front.hpp>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -12,6 +11,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
@@ -76,7 +76,6 @@ TEST(MachineFront, IsAsWideAsTheBucketAndTurnsWithTheSwing) {
 }
 
 TEST(MachineFront, PointsThatAreNotFiniteAreNotHeld) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   const MachineFront front(plain_machine(), hanging(0.0));
   EXPECT_FALSE(front.holds({nan, nan, nan}));
   EXPECT_FALSE(front.holds({3.0, 0.0, nan}));

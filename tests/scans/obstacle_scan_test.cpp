@@ -11,6 +11,7 @@
 
 #include "ground/obstacles.hpp"
 
+#include "support/machine_file.hpp"
 #include "support/obstacle_judge.hpp"
 
 /// @file
@@ -20,11 +21,6 @@ namespace excavplan::test {
 namespace {
 
 using Eigen::Vector3d;
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 /// From 3.2 m above the machine, coarse rows.
 RayScan seen(const Shape& shape) {

@@ -3,9 +3,10 @@
 #include "scans/return_gaps.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
+
+#include "base/non_finite.hpp"
 
 namespace excavplan {
 namespace {
@@ -14,7 +15,6 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 
 constexpr double cell = 0.05;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Index rows = 20, cols = 12, middle = 6;
 
 /// A trench along the columns: rows 8 and on are its floor.

@@ -13,12 +13,11 @@
 
 #include "base/random.hpp"
 
+#include "base/angles.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double degree = 0.017453292519943295;
 
 /// Ground seen from a camera 2.5 m above it that looks down by `tilt` from the vertical, with a
 /// heap on a part of it, noise and stray points.

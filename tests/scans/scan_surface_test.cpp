@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -24,6 +23,7 @@
 
 #include "base/random.hpp"
 
+#include "base/non_finite.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 #include "support/survey_scenes.hpp"
@@ -34,7 +34,6 @@ namespace {
 using Points = std::vector<Eigen::Vector3d>;
 using Shape = std::function<double(double x, double y)>;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const Rectangle field{0.0, 0.0, 3.0, 2.0};
 
 double level(double, double) { return 0.0; }

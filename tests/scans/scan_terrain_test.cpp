@@ -19,10 +19,13 @@
 #include "base/text.hpp"
 
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
+
+using test::zx120;
 
 const Rectangle extent{2.0, -1.0, 6.0, 1.0};
 
@@ -74,11 +77,6 @@ Scan level(double step, double height, const Hides& hides) {
 }
 bool nothing(double /*x*/, double /*y*/) { return false; }
 bool left(double /*x*/, double y) { return y > 0.0; }
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  return machine;
-}
 
 double known_share(const Terrain& terrain) {
   return static_cast<double>(terrain.bank.z.isFinite().count()) /

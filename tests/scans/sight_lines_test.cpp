@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -15,6 +14,7 @@
 #include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/sensing/depth_camera.hpp>
 
+#include "base/non_finite.hpp"
 #include "ground/sensor_place.hpp"
 #include "support/survey_scenes.hpp"
 
@@ -23,8 +23,6 @@ namespace {
 
 using scenes::Dig;
 using scenes::Part;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 HeightMap blank(HeightMap map, const Rectangle& there) {
   for_each_cell(map.z, [&](Cell at) {

@@ -15,7 +15,7 @@
 namespace excavplan {
 namespace {
 
-HeightMap level() { return flat_ground({-20.0, -20.0, 20.0, 20.0}, 0.2); }
+HeightMap level_map() { return flat_ground({-20.0, -20.0, 20.0, 20.0}, 0.2); }
 
 double farthest_from(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& centre) {
   double farthest = 0.0;
@@ -34,8 +34,8 @@ TEST(SensorSetups, AreNamed) {
 
 TEST(SensorSetups, TurnWithTheSwing) {
   for (const SensorSetup& setup : sensor_setups()) {
-    const auto ahead = scan_surface(level(), setup, {0.0}, 1);
-    const auto left = scan_surface(level(), setup, {0.5 * 3.14159265358979}, 1);
+    const auto ahead = scan_surface(level_map(), setup, {0.0}, 1);
+    const auto left = scan_surface(level_map(), setup, {0.5 * 3.14159265358979}, 1);
     ASSERT_GT(ahead.size(), 10000U) << setup.name;
     EXPECT_NEAR(static_cast<double>(left.size()), static_cast<double>(ahead.size()),
                 0.01 * static_cast<double>(ahead.size()));
@@ -49,10 +49,10 @@ TEST(SensorSetups, TurnWithTheSwing) {
 
 TEST(SensorSetups, LooksDoNotShareNoise) {
   const SensorSetup& setup = sensor_setup_of_word("boom-camera");
-  const auto twice = scan_surface(level(), setup, {0.0, 0.0}, 1);
+  const auto twice = scan_surface(level_map(), setup, {0.0, 0.0}, 1);
   const std::size_t half = twice.size() / 2;
   EXPECT_NE(twice[0].z(), twice[half].z());
-  EXPECT_EQ(twice, scan_surface(level(), setup, {0.0, 0.0}, 1));
+  EXPECT_EQ(twice, scan_surface(level_map(), setup, {0.0, 0.0}, 1));
 }
 
 TEST(SensorSetups, SeePitAndHeap) {

@@ -19,12 +19,8 @@ namespace excavplan {
 namespace {
 
 using test::error_of;
+using test::loam;
 using test::zx120;
-
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
 
 DigPath path_from(double start_x) {
   return std::get<DigPath>(

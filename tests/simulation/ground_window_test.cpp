@@ -8,14 +8,13 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/base/error.hpp>
+#include "base/angles.hpp"
 #include "base/random.hpp"
 
 #include "support/errors.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 CellBlock whole(const Terrain& terrain) {
   return {0, terrain.loose.rows(), 0, terrain.loose.cols()};

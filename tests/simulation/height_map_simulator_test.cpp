@@ -11,6 +11,7 @@
 
 #include <excavplan/base/data_files.hpp>
 
+#include "base/angles.hpp"
 #include "base/random.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
@@ -20,8 +21,6 @@
 
 namespace excavplan {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 SoilKind soil_kind(const std::string& name) {
   return load_soil(find_data_file("soils/" + name + ".json"));

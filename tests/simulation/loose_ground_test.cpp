@@ -25,7 +25,7 @@ namespace {
 
 const std::vector<std::string> soils = {"loam", "clay", "sand", "gravel"};
 
-SoilKind soil_kind(const std::string& name) {
+SoilKind soil_named(const std::string& name) {
   return load_soil(find_data_file("soils/" + name + ".json"));
 }
 
@@ -86,7 +86,7 @@ void expect_same(const DigResult& a, const DigResult& b, double share) {
 TYPED_TEST(LooseGround, ABankThatIsNotTouchedDoesNotCount) {
   for (const std::string& name : soils) {
     SCOPED_TRACE(name);
-    const SoilKind soil = soil_kind(name);
+    const SoilKind soil = soil_named(name);
     for (const DigParameters& parameters :
          {DigParameters{0.785, 0.35, 1.5}, DigParameters{1.0, 0.5, 1.0}}) {
       const Terrain ground = this->covered(0.8);
@@ -104,7 +104,7 @@ TYPED_TEST(LooseGround, AStockpileIsDugAlikeOnAnyBank) {
   Random random(11);
   int dug = 0;
   for (const std::string& name : soils) {
-    const SoilKind soil = soil_kind(name);
+    const SoilKind soil = soil_named(name);
     const TypeParam soft(this->machine_, soil, 0.0);
     const TypeParam hard(this->machine_, soil, 100.0);
     for (int i = 0; i < 75;) {
@@ -128,7 +128,7 @@ TYPED_TEST(LooseGround, AStockpileIsDugAlikeOnAnyBank) {
 TYPED_TEST(LooseGround, ALayerResistsLikeABankOfThatSoil) {
   for (const std::string& name : soils) {
     SCOPED_TRACE(name);
-    SoilKind soil = soil_kind(name);
+    SoilKind soil = soil_named(name);
     soil.cohesion_loosest = 0.0;
     soil.void_ratio_max = soil.void_ratio_loose;
     const DigResult bank = this->dig(soil, 0.0, this->covered(0.0));
@@ -139,7 +139,7 @@ TYPED_TEST(LooseGround, ALayerResistsLikeABankOfThatSoil) {
 }
 
 TYPED_TEST(LooseGround, AThickerLayerIsEasierAndACompactedOneHarder) {
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = soil_named("loam");
   double last = this->dig(soil, 60.0, this->covered(0.0)).energy.total;
   for (const double thickness : {0.05, 0.1, 0.15, 0.2}) {
     const double energy = this->dig(soil, 60.0, this->covered(thickness)).energy.total;
@@ -166,7 +166,7 @@ double solids(const Terrain& ground, double bank_void_ratio) {
 // Dug, filled with what was dug, the tracks over it, and dug again.
 TYPED_TEST(LooseGround, SoilThatIsDugAgainNeitherSwellsNorIsLost) {
   Random random(5);
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = soil_named("loam");
   const TypeParam simulator(this->machine_, soil, 60.0);
   const double dense = bank_state(soil, 60.0).void_ratio;
   Terrain ground = this->covered(0.0);
@@ -208,7 +208,7 @@ TEST_F(MapGround, AHeelCompactsTheLooseSoilThatItStandsOn) {
     ASSERT_TRUE(std::holds_alternative<JointAngles>(joints));
     pose.joints = std::get<JointAngles>(joints);
   }
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = soil_named("loam");
   Terrain ground = covered(0.8);
   ground.loose_void_ratio.setConstant(ground.loose.rows(), ground.loose.cols(),
                                       soil.void_ratio_loose);
@@ -228,7 +228,7 @@ TEST_F(MapGround, SoilThatIsPushedThroughALowPileIsNotStrewnOverMetres) {
       ground.loose.col(col).setConstant(std::max(0.0, 0.25 - 0.7 * beside));
     }
     const DigPath path = path_on(ground, {1.0, 0.6, 1.5}, 6.8).value();
-    const DigResult dug = HeightMapSimulator(machine_, soil_kind("loam"), 10.0).dig(ground, path);
+    const DigResult dug = HeightMapSimulator(machine_, soil_named("loam"), 10.0).dig(ground, path);
     const Eigen::ArrayXXd rise = dug.after(ground).surface().z - ground.surface().z;
     const double foot = path.poses.back().bucket.x - 1.0;
     for (Eigen::Index col = 0; ground.bank.x(col) < foot; ++col) {
@@ -238,7 +238,7 @@ TEST_F(MapGround, SoilThatIsPushedThroughALowPileIsNotStrewnOverMetres) {
 }
 
 TEST_F(MapGround, TracksCompactWhatLiesUnderThem) {
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = soil_named("loam");
   Terrain ground = covered(0.4);
   const Eigen::ArrayXXd before = ground.loose;
   Load track{{-1.5, -0.25, 1.5, 0.25}, 40e3};
@@ -267,7 +267,7 @@ TEST_F(MapGround, TracksCompactWhatLiesUnderThem) {
 }
 
 TEST_F(MapGround, ALoadThatCannotBeIsRefused) {
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = soil_named("loam");
   Terrain ground = covered(0.4);
   const auto message = [&](const Load& load) {
     return test::error_of([&] { compact(ground, soil, load); });

@@ -23,10 +23,13 @@
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
+#include "support/machine_file.hpp"
 #include "support/soil_simulator_contract.hpp"
 
 namespace excavplan {
 namespace {
+
+using test::loam;
 
 /// A shovel without limits: lifts all soil above the tip's line, at a fixed energy per volume.
 class ShovelSimulator : public SoilSimulator {
@@ -166,8 +169,6 @@ class ShovelSimulator : public SoilSimulator {
   SoilState loose_;
   std::string identity_;
 };
-
-SoilKind loam() { return load_soil(find_data_file("soils/loam.json")); }
 
 INSTANTIATE_TEST_SUITE_P(Own, SoilSimulatorContract,
                          testing::Values(SimulatorCase{"shovel",

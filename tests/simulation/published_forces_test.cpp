@@ -8,13 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angles.hpp"
 #include "base/table.hpp"
 #include "soil/earthmoving.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double gravity = 9.81;
 
 // One blade in level ground and the horizontal force on it [N]. The equation is not fitted to any.

@@ -25,13 +25,13 @@
 namespace excavplan {
 namespace {
 
-SoilKind soil_kind(const std::string& name) {
+SoilKind shipped_soil(const std::string& name) {
   return load_soil(find_data_file("soils/" + name + ".json"));
 }
 
 SimulatorCase section_of(const std::string& soil) {
   return {soil, [soil](const Machine& machine, double density) {
-            return std::make_unique<SectionSimulator>(machine, soil_kind(soil), density);
+            return std::make_unique<SectionSimulator>(machine, shipped_soil(soil), density);
           }};
 }
 
@@ -96,7 +96,7 @@ TEST_F(Section, CutsTheAreaUnderTheTipsLine) {
         area += 0.5 * below * below / std::abs(p.z - q.z) * run;
       }
     }
-    const SectionSimulator simulator(machine_, soil_kind("loam"), 0.0);
+    const SectionSimulator simulator(machine_, shipped_soil("loam"), 0.0);
     const DigResult result = simulator.dig(ground, path);
     const double volume = area * machine_.bucket.width_outside;
     EXPECT_NEAR(result.soil.bank_cut, volume, 1e-9 * volume);
@@ -156,7 +156,7 @@ TEST_F(Section, WindrowsStandAtTheAngleOfRepose) {
   DigParameters parameters = paper_fixed_path();
   parameters.drag_length = 2.0;
   const Terrain ground = level_planning_ground(machine_, 0.025);
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = shipped_soil("loam");
   const DigResult result =
       SectionSimulator(machine_, soil, 70.0).dig(ground, path_on(ground, parameters));
   ASSERT_FALSE(result.stall);
@@ -178,7 +178,7 @@ TEST_F(Section, WindrowsStandAtTheAngleOfRepose) {
 TEST_F(Section, SandWallsBreakBackAndLoamWallsStand) {
   const Terrain ground = level_planning_ground(machine_);
   const auto widest = [&](const std::string& soil) {
-    const DigResult result = SectionSimulator(machine_, soil_kind(soil), 60.0)
+    const DigResult result = SectionSimulator(machine_, shipped_soil(soil), 60.0)
                                  .dig(ground, path_on(ground, {0.86, 0.76, 1.46}));  // 0.6 m deep
     const Terrain after = result.after(ground);
     Eigen::Index rows = 0;
@@ -194,7 +194,7 @@ TEST_F(Section, SandWallsBreakBackAndLoamWallsStand) {
 TEST_F(Section, HardlyDependsOnCellAndStep) {
   // Both a path that fills the bucket and one that overfills it twice.
   for (const DigParameters& parameters : {paper_fixed_path(), DigParameters{0.86, 0.76, 1.46}}) {
-    const SectionSimulator simulator(machine_, soil_kind("loam"), 40.0);
+    const SectionSimulator simulator(machine_, shipped_soil("loam"), 40.0);
     const Terrain ground = level_planning_ground(machine_);
     const DigResult coarse = simulator.dig(ground, path_on(ground, parameters));
     const Terrain fine_ground = level_planning_ground(machine_, 0.0125);
@@ -213,7 +213,7 @@ TEST_F(Section, HardlyDependsOnCellAndStep) {
 TEST_F(Section, TeethPenetrateAsTheirConeIndexSays) {
   // With teeth and without, driven equally deep, friction is the same: what is left is the cone
   // index on teeth that grow over their length, or on the whole lip.
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = shipped_soil("loam");
   const SoilState state = bank_state(soil, 20.0);
   Machine plain = machine_;
   plain.bucket.teeth.reset();
@@ -252,7 +252,7 @@ TEST_F(Section, TeethPenetrateAsTheirConeIndexSays) {
 TEST_F(Section, BluntLipsMeetThePassivePressureOnAFlatEdge) {
   // Two lips dragged level through the same ground differ by the limit pressure on a flat front in
   // soil with friction (Sokolovski 1960): as deep as it is thick, under the soil above it.
-  const SoilKind soil = soil_kind("clay");
+  const SoilKind soil = shipped_soil("clay");
   const SoilState state = bank_state(soil, 40.0);
   const double phi = state.friction_angle;
   const double delta = state.tool_friction_angle;
@@ -298,7 +298,7 @@ TEST_F(Section, HeelStandsOnTheGroundLikeAFooting) {
     pose.joints = std::get<JointAngles>(inverse_kinematics(machine_, pose.bucket));
     path.poses.push_back(pose);
   }
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = shipped_soil("loam");
   const SoilState state = bank_state(soil, 40.0);
   DigOptions options;
   options.history = true;
@@ -343,7 +343,7 @@ TEST_F(Section, NothingPressesUnderTheHeelOfAPlannedDig) {
   DigOptions options;
   options.history = true;
   const DigResult result =
-      SectionSimulator(machine_, soil_kind("loam"), 40.0).dig(ground, path, options);
+      SectionSimulator(machine_, shipped_soil("loam"), 40.0).dig(ground, path, options);
   const double angle = path.parameters.penetration_angle;
   for (const ForceSample& sample : result.history) {
     if (sample.phase != DigPhase::penetrate) break;
@@ -373,7 +373,7 @@ TEST_F(Section, PackedSoilIsAnEasierFaceThanAFlatFloor) {
     DigOptions options;
     options.history = true;
     const DigResult result =
-        SectionSimulator(machine, soil_kind("clay"), 20.0).dig(ground, path, options);
+        SectionSimulator(machine, shipped_soil("clay"), 20.0).dig(ground, path, options);
     return result.history.at(59).soil.x() / result.history.at(45).soil.x();
   };
   EXPECT_LT(last_over_first(0.1), 0.99);
@@ -381,7 +381,7 @@ TEST_F(Section, PackedSoilIsAnEasierFaceThanAFlatFloor) {
 }
 
 TEST_F(Section, EqualVoidRatiosAreThatDensity) {
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = shipped_soil("loam");
   Terrain ground = level_planning_ground(machine_);
   const DigPath path = path_on(ground);
   const DigResult told = SectionSimulator(machine_, soil, 45.0).dig(ground, path);
@@ -395,7 +395,7 @@ TEST_F(Section, EqualVoidRatiosAreThatDensity) {
 TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
   // Adjacent dense and loose rows, on rough ground: the bucket holds what the cells lost, each at
   // its own ratio.
-  const SoilKind soil = soil_kind("loam");
+  const SoilKind soil = shipped_soil("loam");
   Terrain ground = rough_ground(machine_, 8);
   ground.bank_void_ratio = ground.loose_void_ratio = ground.loose;
   for (Eigen::Index row = 0; row < ground.loose.rows(); ++row) {
@@ -430,7 +430,7 @@ class SectionGround : public testing::Test {
   }
 
   const double width_ = 0.8;
-  const SoilKind kind_ = soil_kind("loam");
+  const SoilKind kind_ = shipped_soil("loam");
   const SoilState bank_ = bank_state(kind_, 40.0);
   const SoilState loose_ = loose_state(kind_);
   const Terrain level_ = undisturbed(flat_ground({0.0, -2.0, 4.0, 2.0}, 0.05));
@@ -507,7 +507,7 @@ TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
   // written twice. They part where soil leaves the pile ahead: around its corners, and over its
   // sides, it has a closed form in the section and cells on the map.
   const Terrain ground = slope(GetParam().gradient);
-  const SoilKind soil = soil_kind(GetParam().soil);
+  const SoilKind soil = shipped_soil(GetParam().soil);
   Machine machine = machine_;
   if (!GetParam().teeth) machine.bucket.teeth.reset();
   const std::vector<DigPath> paths = ten_paths(ground);
@@ -556,7 +556,7 @@ TEST_F(Section, SoilKeepsToKnownCellsBesideTheCut) {
   const Eigen::Index beside = ground.bank.z.rows() / 2 + 9;
   const DigPath path = path_on(ground, {0.86, 0.76, 1.46});
   ground.bank.z.row(beside).setConstant(std::nan(""));
-  const DigResult result = SectionSimulator(machine_, soil_kind("sand"), 40.0).dig(ground, path);
+  const DigResult result = SectionSimulator(machine_, shipped_soil("sand"), 40.0).dig(ground, path);
   const Terrain after = result.after(ground);
   EXPECT_EQ(after.bank.z.isNaN().count(), ground.bank.z.cols());
   EXPECT_EQ(after.loose.row(beside).sum(), 0.0);
@@ -565,7 +565,7 @@ TEST_F(Section, SoilKeepsToKnownCellsBesideTheCut) {
 }
 
 TEST_F(Section, SaysWhatIsWrongWithAPath) {
-  const SectionSimulator simulator(machine_, soil_kind("loam"), 40.0);
+  const SectionSimulator simulator(machine_, shipped_soil("loam"), 40.0);
   const Terrain ground = level_planning_ground(machine_);
   const auto message = [&](const Terrain& terrain, const DigPath& path) {
     return test::error_of([&] { simulator.dig(terrain, path); });
@@ -585,7 +585,7 @@ TEST_F(Section, SaysWhatIsWrongWithAPath) {
 
 TEST_F(Section, RepeatedDigsAtOneSpotLoseNothing) {
   Terrain ground = rough_ground(machine_, 3);
-  const SectionSimulator simulator(machine_, soil_kind("loam"), 60.0);
+  const SectionSimulator simulator(machine_, shipped_soil("loam"), 60.0);
   Random random(17);
   for (int i = 0; i < 300; ++i) {
     DigParameters parameters;

@@ -8,10 +8,10 @@
 
 #include <excavplan/base/error.hpp>
 
+#include "base/angles.hpp"
+
 namespace excavplan {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 CuttingWedge wedge_of(double rake, double friction, double tool_friction, double slope = 0.0) {
   return {rake * degree, friction * degree, tool_friction * degree, slope * degree};

@@ -14,7 +14,6 @@
 namespace excavplan::test {
 namespace {
 
-constexpr double degree = pi / 180.0;
 constexpr double weight = 18000.0;  // [N/m^3]
 
 SoilState soil(double cohesion, double friction) {

@@ -9,12 +9,13 @@
 #include <excavplan/base/data_files.hpp>
 
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
 
-SoilKind loam() { return load_soil(find_data_file("soils/loam.json")); }
+using test::loam;
 
 PlainGround plain_ground() {
   PlainGround plain;

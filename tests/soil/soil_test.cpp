@@ -18,12 +18,11 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
 
+#include "base/angles.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double degree = 0.017453292519943295;
 
 SoilKind shipped(const std::string& name) {
   return load_soil(find_data_file("soils/" + name + ".json"));

@@ -9,11 +9,6 @@
 
 namespace excavplan::test {
 
-const SoilKind& loam() {
-  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
-  return soil;
-}
-
 Terrain uneven_ground(double cell_size) {
   Terrain ground = level_planning_ground(zx120(), cell_size);
   for (Eigen::Index col = 0; col < ground.loose.cols(); ++col) {

@@ -19,8 +19,6 @@
 
 namespace excavplan::test {
 
-const SoilKind& loam();
-
 /// Relief, loose soil and a corner that nobody has seen.
 Terrain uneven_ground(double cell_size = 0.1);
 

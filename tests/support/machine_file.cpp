@@ -19,6 +19,11 @@ const Machine& zx120() {
   return machine;
 }
 
+const SoilKind& loam() {
+  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
+  return soil;
+}
+
 Machine zx120_held_down() {
   Machine machine = zx120();
   machine.body.reset();

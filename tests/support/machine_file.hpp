@@ -8,6 +8,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/machine.hpp>
+#include <excavplan/soil/soil.hpp>
 
 #include "support/errors.hpp"
 
@@ -17,6 +18,9 @@ std::string zx120_path();
 
 /// The shipped machine.
 const Machine& zx120();
+
+/// The shipped soil that most tests dig in.
+const SoilKind& loam();
 
 /// The shipped machine, but no force of the soil lifts or drags it.
 Machine zx120_held_down();

@@ -13,6 +13,7 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
+#include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan::test {
@@ -89,9 +90,5 @@ class PlainSiteFolder {
 
   TemporaryFolder folder_;
 };
-
-inline Machine zx120() {
-  return load_machine(std::string(EXCAVPLAN_DATA_SOURCE) + "/machines/zx120.json");
-}
 
 }  // namespace excavplan::test

@@ -79,4 +79,17 @@ class RecordingInMemory : public RecordingFile {
   std::vector<Stored> messages_;
 };
 
+inline constexpr std::int64_t ms = 1000000;  // [ns]
+inline constexpr std::int64_t epoch = RecordingInMemory::epoch;
+inline const std::string cloud_type = "sensor_msgs/msg/PointCloud2";
+inline const std::string tf_type = "tf2_msgs/msg/TFMessage";
+
+/// Stamped at `time`, recorded `late` after it [ns].
+inline void add_transform(RecordingInMemory& recording, std::int64_t time,
+                          TransformNumbers transform, const std::string& topic = "/tf",
+                          std::int64_t late = 0) {
+  transform.stamp = epoch + time;
+  recording.add(topic, tf_type, time + late, transform_bytes({transform}));
+}
+
 }  // namespace excavplan::test

@@ -75,8 +75,8 @@ std::string in_millimetres(const TemporaryFolder& folder, const std::string& sca
   return name + "-mm.xyz";
 }
 
-ScanPair scan_pair(const TemporaryFolder& folder, int density, int seed) {
-  ScanPair scans{folder.file("before.pcd"), folder.file("after.pcd"), {}};
+ScanFiles scan_pair(const TemporaryFolder& folder, int density, int seed) {
+  ScanFiles scans{folder.file("before.pcd"), folder.file("after.pcd"), {}};
   auto held_down = nlohmann::json::parse(content_of(shipped("machines/zx120.json")));
   held_down.erase("body");  // dense soil would lift the machine
   scans.truth =

@@ -54,13 +54,13 @@ Words quickstart(const TemporaryFolder&);
 std::string in_millimetres(const TemporaryFolder& folder, const std::string& scan);
 
 /// Two scans of the whole scene and what really happened.
-struct ScanPair {
+struct ScanFiles {
   std::string before;
   std::string after;
   json truth;
 };
 
-ScanPair scan_pair(const TemporaryFolder& folder, int density, int seed);
+ScanFiles scan_pair(const TemporaryFolder& folder, int density, int seed);
 
 class Tools : public testing::Test {
  protected:

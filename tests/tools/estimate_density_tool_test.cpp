@@ -349,7 +349,7 @@ INSTANTIATE_TEST_SUITE_P(Tools, ScansOfSeed, testing::Range(1, 11));
 TEST_P(ScansOfSeed, GiveTheDensity) {
   const TemporaryFolder folder;
   const int density = 10 * GetParam() - 5;
-  const ScanPair scans = scan_pair(folder, density, GetParam());
+  const ScanFiles scans = scan_pair(folder, density, GetParam());
   expect_truth_found(answer("estimate-density", {scans.before, scans.after}), density);
   const double solids = number(scans.truth, "/solids_before_kg");
   EXPECT_NEAR(number(scans.truth, "/solids_after_kg"), solids, 1e-9 * solids);
@@ -372,7 +372,7 @@ std::string part_of(const TemporaryFolder& folder, const std::string& scan, doub
 }
 
 TEST_F(Tools, SeparateScansOfDigAndDumpGiveTheSameAsTheWholeScene) {
-  const ScanPair scans = scan_pair(folder, 50, 3);
+  const ScanFiles scans = scan_pair(folder, 50, 3);
   const json whole = answer("estimate-density", {scans.before, scans.after});
   const json separate =
       answer("estimate-density",
@@ -388,7 +388,7 @@ TEST_F(Tools, SeparateScansOfDigAndDumpGiveTheSameAsTheWholeScene) {
 }
 
 TEST_F(Tools, MapsOfADumpAreaAreThoseOfItsScans) {
-  const ScanPair scans = scan_pair(folder, 50, 3);
+  const ScanFiles scans = scan_pair(folder, 50, 3);
   answer(
       "estimate-density",
       {part_of(folder, scans.before, -3.0, 2.0), part_of(folder, scans.after, -3.0, 2.0),
@@ -448,7 +448,7 @@ TEST_F(BadInput, OutlierSettingsThatMakeNoSense) {
 }
 
 TEST_F(Tools, AKnownPathCorrectsTheBulkingFactorForFallback) {
-  const ScanPair scans = scan_pair(folder, 90, 2);
+  const ScanFiles scans = scan_pair(folder, 90, 2);
   const double start = number(scans.truth, "/path/start_x_m");
   const Words words = {scans.before, scans.after};
   const json without = answer("estimate-density", words);

@@ -9,6 +9,7 @@
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/soil/ground_in_soil.hpp>
 
+#include "support/machine_file.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -17,8 +18,6 @@
 
 namespace excavplan::test {
 namespace {
-
-SoilKind loam() { return load_soil(find_data_file("soils/loam.json")); }
 
 /// A grid of the same value that covers the dig and, if it is wide, the heap.
 void write_grid(const TemporaryFolder& folder, const std::string& name, double value,

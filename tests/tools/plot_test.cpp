@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "base/non_finite.hpp"
 #include "base/plan_geometry.hpp"
 #include "drawing/render.hpp"
 #include "figures/change_figure.hpp"
@@ -177,7 +178,6 @@ TEST(LayOut, TheTableIsBelowAll) {
 }
 
 TEST(Panel, UnknownPointsInterruptALine) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   Panel panel("", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}, {2.0, nan}, {3.0, 1.0}, {4.0, 0.0}}, {"#123456"});
   const std::string svg = svg_of(panel);

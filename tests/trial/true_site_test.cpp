@@ -34,7 +34,7 @@ struct SiteAtOrigin : PlainSiteFolder {
   SiteAtOrigin() { site["start_pose"]["x"] = 0.0; }
 };
 
-double deviation(const std::vector<double>& values) {
+double rms_of(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double value : values) squares += value * value;
   return std::sqrt(squares / static_cast<double>(values.size()));
@@ -226,9 +226,9 @@ TEST(TrueSite, AMoveLandsALittleOffAndIsKnownBetter) {
     known.push_back(done.report.base->x - truth.true_base().x);
     known.push_back(done.report.base->y - truth.true_base().y);
   }
-  EXPECT_NEAR(deviation(landing), 0.05, 0.015);
-  EXPECT_NEAR(deviation(turn), 0.01745, 0.006);
-  EXPECT_NEAR(deviation(known), 0.01, 0.003);
+  EXPECT_NEAR(rms_of(landing), 0.05, 0.015);
+  EXPECT_NEAR(rms_of(turn), 0.01745, 0.006);
+  EXPECT_NEAR(rms_of(known), 0.01, 0.003);
 }
 
 TEST(TrueSite, SeenIsWhatAScanSawSinceItChanged) {
@@ -294,8 +294,8 @@ TEST(TrackedPath, HeightErrorsHaveTheStatedDeviationAndLength) {
     first.push_back(shift.front() - 0.007);
     along.push_back(shift[20] - shift.front());  // 0.5 m on
   }
-  EXPECT_NEAR(deviation(first), 0.012, 0.0005);
-  EXPECT_NEAR(deviation(along), 0.012 * std::sqrt(1.0 - std::exp(-1.0)), 0.0007);
+  EXPECT_NEAR(rms_of(first), 0.012, 0.0005);
+  EXPECT_NEAR(rms_of(along), 0.012 * std::sqrt(1.0 - std::exp(-1.0)), 0.0007);
 }
 
 TEST(TrackedPath, AnErrorOfTheTipDoesNotPressTheHeel) {
