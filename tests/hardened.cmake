@@ -21,7 +21,8 @@ require("guarded stack frames" "__stack_chk_fail")
 
 # Not every program copies what has to be checked at run time: that the compiler checks is in its
 # command lines.
-file(STRINGS ${COMMANDS} commands REGEX "\"command\": .* -c .*/(src|tools)/[^ ]*\\.cpp")
+file(STRINGS ${COMMANDS} commands
+  REGEX "\"command\": .* -c .*(/(src|tools)/[^ ]*\\.cpp|/Unity/unity_[^ ]*_cxx\\.cxx)")
 if(NOT commands)
   message(SEND_ERROR "${COMMANDS}: no command compiles a file of src or tools")
 endif()

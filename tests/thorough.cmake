@@ -7,6 +7,14 @@
 
 # Statistics over many simulated surveys.
 set(thorough_ground_test
+  Align/HeapThatGrew.EvenlyIsNoShiftOfKnownGround/2
+  Align/HeapThatGrew.EvenlyIsNoShiftOfKnownGround/6
+  Align/HeapThatGrew.EvenlyIsNoShiftOfKnownGround/8
+  Align/HeapThatGrew.EvenlyIsNoShiftOfKnownGround/9
+  Align/HeapThatGrew.OnOneSideIsNoShiftOfKnownGround/2
+  Align/HeapThatGrew.OnOneSideIsNoShiftOfKnownGround/4
+  Align/HeapThatGrew.OnOneSideIsNoShiftOfKnownGround/6
+  Align/HeapThatGrew.OnOneSideIsNoShiftOfKnownGround/9
   Align.ItsErrorsAreAsLargeAsItSays
   Align.ScansThatDidNotMoveAreLeftAlone
   SensorPlace.BesideHeapsItIsSeldomWrong
@@ -19,6 +27,7 @@ set(thorough_ground_test
 set(thorough_change_test
   Falls/PitInShadow.HasAnErrorThatCoversWhatALedgeHides/*
   ShadowFilling.KeepsTrustInAHoleUpToThirtyFivePercentInShadow
+  Blocks.AreFoundInEveryHeapOfThem
   Blocks.VoidsAreEstimatedWithinTheirStandardDeviation
   Blocks.SizeIsToldToAFifth
   Blocks.LooseSoilIsNeverTakenForThem
@@ -45,9 +54,13 @@ set(thorough_sensing_test
   SurveyPlan.PredictsTheScatterOfSimulatedSurveys
   SceneTest.CalibrationDigsInTheSimulatorGiven
   SceneTest.TheUsualLawIsTheShippedOneOfTheVerySameSoil)
-# A whole job.
+# A whole job; that a job which is resumed after each step goes on alike stays, its history is looked at here.
 set(thorough_job_test
+  JobHistory.OfAJobThatWasResumedAfterEachStepIsThatOfOneThatWasNot
   SiteJob.WithExactScansATrenchIsDugToItsDesign)
+# Statistics of many scans.
+set(thorough_trial_test
+  SiteScan.ThePatternHasTheStatedDeviationAndIsSharedByNeighbours)
 # Convergence over grids and a thousand digs.
 set(thorough_calibration_test
   Validation.ConvergesWithTheGrid
@@ -115,6 +128,7 @@ set(thorough_hostile_test
 # Whole calibrations, studies and libraries by a tool; the library's tests reach their code.
 set(thorough_tools_test
   Tools.AStudyWritesItsRunsAndItsTable
+  Tools.ASearchHasTheGenerationsOfItsHelpHoweverManyDigsItMayMake
   Tools.APathThatWasNotDugEndsTrust
   Tools.FieldExperimentComparesVolumePerFuel
   Tools.CalibrateDensityReportsTheDifferenceOfTrueAndMeasuredFactors
