@@ -29,7 +29,7 @@
 namespace excavplan {
 namespace {
 
-const Machine& zx120() {
+const Machine& shipped_machine() {
   static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
   return machine;
 }
@@ -41,10 +41,10 @@ const std::vector<BucketPose>& random_poses() {
     for (int n = 0; n < 4096; ++n) {
       JointAngles joints;
       for (int i = 0; i < 3; ++i) {
-        const JointLimits& limits = zx120().limits[static_cast<std::size_t>(i)];
+        const JointLimits& limits = shipped_machine().limits[static_cast<std::size_t>(i)];
         joints[i] = random.uniform(limits.lower, limits.upper);
       }
-      drawn.push_back(forward_kinematics(zx120(), joints));
+      drawn.push_back(forward_kinematics(shipped_machine(), joints));
     }
     return drawn;
   }();
@@ -53,14 +53,14 @@ const std::vector<BucketPose>& random_poses() {
 
 /// True if the joints hold the pose within 10 um and 10 urad, inside their limits.
 bool holds(const JointAngles& joints, const BucketPose& pose) {
-  const BucketPose got = forward_kinematics(zx120(), joints);
+  const BucketPose got = forward_kinematics(shipped_machine(), joints);
   return std::hypot(got.x - pose.x, got.z - pose.z) < 1e-5 &&
          std::abs(std::remainder(got.floor_angle - pose.floor_angle, 2.0 * pi)) < 1e-5 &&
-         limit_margin(zx120(), joints).margin > -1e-9;
+         limit_margin(shipped_machine(), joints).margin > -1e-9;
 }
 
 JointAngles closed_form(const BucketPose& pose) {
-  const auto joints = inverse_kinematics(zx120(), pose);
+  const auto joints = inverse_kinematics(shipped_machine(), pose);
   const auto* found = std::get_if<JointAngles>(&joints);
   return found != nullptr ? *found : JointAngles::Zero();
 }
@@ -105,7 +105,7 @@ BENCHMARK(inverse_kinematics_closed_form)
 class KdlMachine {
  public:
   KdlMachine() : lower_(3), upper_(3), middle_(3) {
-    const Machine& m = zx120();
+    const Machine& m = shipped_machine();
     chain_.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None),
                                    KDL::Frame({m.boom_pin.x(), 0.0, m.boom_pin.y()})));
     for (const double length : {m.boom_length, m.arm_length, m.bucket_length}) {
@@ -121,7 +121,7 @@ class KdlMachine {
 
   template <typename KdlSolver>
   JointAngles solve(KdlSolver& solver, const BucketPose& pose) const {
-    const double turn = pi - zx120().beta() - pose.floor_angle;
+    const double turn = pi - shipped_machine().beta() - pose.floor_angle;
     KDL::JntArray joints(3);
     solver.CartToJnt(middle_, {KDL::Rotation::RotY(turn), {pose.x, 0.0, pose.z}}, joints);
     return {joints(0), joints(1), joints(2)};
@@ -163,7 +163,7 @@ BENCHMARK(inverse_kinematics_kdl_nr_jl)
 
 /// The paper's fixed path in about 200 poses; the argument: with cylinders and oil, or joints only.
 void time_path(benchmark::State& state) {
-  Machine machine = zx120();
+  Machine machine = shipped_machine();
   if (state.range(0) == 0) {
     machine.cylinders.reset();
     machine.hydraulics.reset();

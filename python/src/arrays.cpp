@@ -76,7 +76,7 @@ struct Numbers {
   throw Error(ErrorKind::bad_input, what + ": found " + found + ", expected " + expected);
 }
 
-std::string text(const Shape& shape) {
+std::string shape_text(const Shape& shape) {
   std::string text = "(";
   for (std::size_t i = 0; i < shape.size(); ++i) {
     text += (i > 0 ? ", " : "") + std::to_string(shape[i]);
@@ -142,7 +142,7 @@ void require_room(const std::string& what, const py::buffer_info& buffer) {
   }
   const auto size = static_cast<double>(buffer.size);
   if (size <= most_cells || size <= places) return;
-  refuse(what, "the shape " + text(buffer.shape) + ", broadcast",
+  refuse(what, "the shape " + shape_text(buffer.shape) + ", broadcast",
          "at most " + std::to_string(static_cast<std::int64_t>(most_cells)) +
              " numbers that share memory");
 }
@@ -229,7 +229,7 @@ Numbers read_table(const std::string& what, const py::object& object, py::ssize_
   Numbers numbers = read(what, object);
   if (numbers.shape == Shape{0} && columns > 0) numbers.shape = {0, columns};
   if (numbers.shape.size() != 2 || (columns > 0 && numbers.shape[1] != columns)) {
-    refuse(what, "the shape " + text(numbers.shape), expected);
+    refuse(what, "the shape " + shape_text(numbers.shape), expected);
   }
   return numbers;
 }
@@ -271,7 +271,8 @@ Eigen::ArrayXXd table_of(const std::string& what, const py::object& object) {
 
 std::vector<double> numbers_of(const std::string& what, const py::object& object) {
   Numbers numbers = read(what, object);
-  if (numbers.shape.size() != 1) refuse(what, "the shape " + text(numbers.shape), "one dimension");
+  if (numbers.shape.size() != 1)
+    refuse(what, "the shape " + shape_text(numbers.shape), "one dimension");
   return std::move(numbers.values);
 }
 
@@ -286,7 +287,7 @@ std::vector<Eigen::Vector3d> points_of(const std::string& what, const py::object
 
 Eigen::Matrix4d transform_of(const std::string& what, const py::object& object) {
   const Numbers numbers = read_table(what, object, 4, "(4, 4)");
-  if (numbers.shape[0] != 4) refuse(what, "the shape " + text(numbers.shape), "(4, 4)");
+  if (numbers.shape[0] != 4) refuse(what, "the shape " + shape_text(numbers.shape), "(4, 4)");
   using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   return Eigen::Map<const Rows>(numbers.values.data());
 }

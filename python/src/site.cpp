@@ -277,13 +277,14 @@ void bind_views(SiteClass& site) {
           "The ground about a machine, in its frame: cells that no scan saw are unknown.");
 }
 
-SitePlanInPython planned(SiteInPython& site, const BasePose& base,
-                         const std::optional<GroundDensity>& density, const std::string& method,
-                         const std::optional<PathLibrary>& library,
-                         const std::optional<SearchOptionsInPython>& search,
-                         const py::object& simulator, double speed_fraction,
-                         const std::optional<HeightMap>& standing_on,
-                         const std::optional<Terrain>& present) {
+SitePlanInPython planned_on_site(SiteInPython& site, const BasePose& base,
+                                 const std::optional<GroundDensity>& density,
+                                 const std::string& method,
+                                 const std::optional<PathLibrary>& library,
+                                 const std::optional<SearchOptionsInPython>& search,
+                                 const py::object& simulator, double speed_fraction,
+                                 const std::optional<HeightMap>& standing_on,
+                                 const std::optional<Terrain>& present) {
   const auto own = std::make_shared<Call>();
   SitePlanOptions options;
   options.base = base;
@@ -318,7 +319,7 @@ void bind_site(py::module_& module) {
   bind_updates(site);
   bind_views(site);
   module.def(
-      "plan_on_site", &planned, arg("site"), py::kw_only(), arg("base") = BasePose{},
+      "plan_on_site", &planned_on_site, arg("site"), py::kw_only(), arg("base") = BasePose{},
       arg("density") = py::none(), arg("method") = "library", arg("library") = py::none(),
       arg("search") = py::none(), arg("simulator") = py::none(),
       arg("speed_fraction") = TrajectoryOptions{}.speed_fraction, arg("standing_on") = py::none(),

@@ -229,7 +229,7 @@ void SearchLog::run_strands(int generation, int evaluations,
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const int limit = std::min(evaluations, room_left);
     room_left -= limit;
-    strands.push_back(Strand(*this, generation, limit, patience));
+    strands.push_back(Strand(*this, generation, {limit, patience}));
   }
   parallel_for(tasks.size(), options_.threads, [&](std::size_t i) { tasks[i](strands[i]); });
   for (Strand& strand : strands) {
@@ -255,7 +255,8 @@ std::optional<Evaluation> SearchLog::Strand::ask(const Candidate& candidate) {
       record.source = SearchRecord::Source::cached;
       record.outcome = *known;
     } else {
-      if (evaluations_ == limit_ || (failed_ >= patience_ && failed_ == evaluations_)) {
+      if (evaluations_ == limits_.evaluations ||
+          (failed_ >= limits_.patience && failed_ == evaluations_)) {
         return std::nullopt;
       }
       const std::optional<Evaluation> outcome = log_.simulate(record.point);

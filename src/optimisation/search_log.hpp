@@ -110,21 +110,19 @@ class SearchLog::Strand {
 
  private:
   friend class SearchLog;
-  /// @param patience  evaluations after which it ends if all of them failed
-  Strand(SearchLog& log, int generation, int limit, int patience)
-      : log_(log),
-        generation_(generation),
-        number_(++log.strand_count_),
-        limit_(limit),
-        patience_(patience) {}
+  struct Limits {
+    int evaluations;
+    int patience;  ///< evaluations after which it ends if all of them failed
+  };
+  Strand(SearchLog& log, int generation, Limits limits)
+      : log_(log), generation_(generation), number_(++log.strand_count_), limits_(limits) {}
 
   const Evaluation* remembered(const PointKey& key) const;
 
   SearchLog& log_;
   int generation_;
   int number_;
-  int limit_;
-  int patience_;
+  Limits limits_;
   int evaluations_ = 0;
   int failed_ = 0;
   bool reached_ = false;

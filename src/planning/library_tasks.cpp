@@ -141,7 +141,7 @@ LibraryTask read_task(const LibraryJob& job, const std::string& text) {
       refuse("library worker: " + in_quotes(text) + " is no task of a build");
     }
   };
-  const LibraryTask task = read();
+  LibraryTask task = read();
   require(task.place.machine < job.grid.machines.size() && task.place.soil < job.grid.soils.size(),
           "library worker: the task is one of another grid");
   return task;
