@@ -17,9 +17,9 @@ namespace excavplan {
 namespace {
 
 // All ours.
-constexpr double negligible = 0.0005;  // of the hole's volume
-constexpr double least_stated = 0.03;  // weight of a reading
-constexpr double least_single = 0.01;  // and of one that alone shows a change the other way
+constexpr double negligible_share = 0.0005;  // of the hole's volume
+constexpr double least_stated = 0.03;        // weight of a reading
+constexpr double least_single = 0.01;        // and of one that alone shows a change the other way
 constexpr std::size_t most_readings = 6;
 constexpr std::size_t most_single = 4;
 constexpr double farthest = 0.025;       // weight that the covariance leaves out
@@ -68,7 +68,7 @@ class OpenChanges {
 
   const std::vector<Change>& changes() const { return attribution_.changes; }
   bool is_negligible(const Change& change) const {
-    return std::abs(change.volume) < negligible * result_.before.value;
+    return std::abs(change.volume) < negligible_share * result_.before.value;
   }
 
   Eigen::Vector3d role_of(const Change& change) const {

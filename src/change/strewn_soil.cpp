@@ -14,10 +14,10 @@
 namespace excavplan {
 namespace {
 
-constexpr double near_soil = 0.6;       // ours: from hole, spill or heap [m]
-constexpr double clip = 4.0;            // sd of a cell
-constexpr double highest_crumb = 0.03;  // ours [m]
-constexpr double fewest_far = 100.0;    // ours: cells
+constexpr double near_soil = 0.6;        // ours: from hole, spill or heap [m]
+constexpr double strewn_clip = 4.0;      // sd of a cell
+constexpr double highest_strewn = 0.03;  // ours [m]
+constexpr double fewest_far = 100.0;     // ours: cells
 /// Share of digs with soil strewn too thin for a layer, ours: of those without layers, and of those
 /// whose layers are more than so much of what rose.
 constexpr double strewn_without = 0.3;
@@ -46,7 +46,7 @@ OutsideSum outside_of(const Area& area) {
   });
   if (!counted.any()) return {};
   const Eigen::ArrayXXd away = distance_to(counted) * area.grid.cell_size;
-  const double bound = std::max(clip * ground.noise_sd, highest_crumb);
+  const double bound = std::max(strewn_clip * ground.noise_sd, highest_strewn);
   using Terms = NormalEquations<3>::Vector;
   NormalEquations<3> far;
   Terms near = Terms::Zero();

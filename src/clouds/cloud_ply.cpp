@@ -13,7 +13,7 @@
 namespace excavplan {
 namespace {
 
-enum class Encoding { ascii, little_endian, big_endian };
+enum class PlyEncoding { ascii, little_endian, big_endian };
 
 struct Property {
   std::string name;
@@ -42,7 +42,7 @@ struct Element {
 };
 
 struct PlyHeader {
-  Encoding encoding = Encoding::ascii;
+  PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<Element> elements;
 };
 
@@ -82,11 +82,11 @@ ScalarType scalar_type(std::string_view name, const LineReader& lines) {
 
 using Words = std::vector<std::string_view>;
 
-Encoding read_encoding(const Words& words, const LineReader& lines) {
+PlyEncoding read_encoding(const Words& words, const LineReader& lines) {
   if (words.size() == 3 && words[0] == "format" && words[2] == "1.0") {
-    if (words[1] == "ascii") return Encoding::ascii;
-    if (words[1] == "binary_little_endian") return Encoding::little_endian;
-    if (words[1] == "binary_big_endian") return Encoding::big_endian;
+    if (words[1] == "ascii") return PlyEncoding::ascii;
+    if (words[1] == "binary_little_endian") return PlyEncoding::little_endian;
+    if (words[1] == "binary_big_endian") return PlyEncoding::big_endian;
   }
   lines.fail(in_quotes(lines.line()),
              "format ascii, binary_little_endian or binary_big_endian 1.0");
@@ -148,7 +148,7 @@ Words next_header_line(LineReader& lines) {
   }
 }
 
-PlyHeader read_header(LineReader& lines) {
+PlyHeader read_ply_header(LineReader& lines) {
   PlyHeader header;
   lines.next();  // "ply", by which the format was detected
   header.encoding = read_encoding(next_header_line(lines), lines);
@@ -325,11 +325,11 @@ bool holds_ply(FileStream& file) {
 
 CloudShape stream(FileStream& file, const MeshSink& to) {
   LineReader lines(file);
-  const PlyHeader header = read_header(lines);
-  if (header.encoding == Encoding::ascii) {
+  const PlyHeader header = read_ply_header(lines);
+  if (header.encoding == PlyEncoding::ascii) {
     stream_text(file, lines, header, to);
   } else {
-    BinaryBody(file, header.encoding == Encoding::big_endian, to).stream(header.elements);
+    BinaryBody(file, header.encoding == PlyEncoding::big_endian, to).stream(header.elements);
   }
   const auto vertices = std::find_if(header.elements.begin(), header.elements.end(),
                                      [](const Element& e) { return e.name == "vertex"; });

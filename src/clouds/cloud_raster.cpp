@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double most_cells = 1e8;
+constexpr double most_raster_cells = 1e8;
 
 /// Lattice lines of the grid before `low` and behind `high`, with room for rounding.
 struct Span {
@@ -52,7 +52,7 @@ HeightMap empty_map(const Rectangle& extent, const RasterOptions& options) {
     refuse("extent x " + number_text(extent.x_min) + " .. " + number_text(extent.x_max) + ", y " +
            number_text(extent.y_min) + " .. " + number_text(extent.y_max) + " m is empty");
   }
-  if (!(columns.count * rows.count <= most_cells)) {
+  if (!(columns.count * rows.count <= most_raster_cells)) {
     refuse("cells of " + number_text(options.cell_size) + " m make a map of " +
            number_text(columns.count) + " x " + number_text(rows.count) +
            ", at most 100 million cells are possible");

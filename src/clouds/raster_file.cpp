@@ -64,11 +64,11 @@ class GeoKeys {
 };
 
 /// The outer corner of the first cell, at the top left, and the edge of a cell.
-struct Place {
+struct RasterPlace {
   double x, y, cell;
 };
 
-Place place_of(const TiffFile& tiff, bool is_point) {
+RasterPlace place_of(const TiffFile& tiff, bool is_point) {
   const std::vector<double> scale = tiff.numbers(33550);
   const std::vector<double> tie = tiff.numbers(33922);
   const std::vector<double> matrix = tiff.numbers(34264);
@@ -112,7 +112,7 @@ RasterFile read_geotiff(const std::string& path) {
   RasterFile raster;
   raster.unit = keys.unit(3076, 3077);
   raster.height_unit = keys.unit(4099, std::nullopt);
-  const Place place = place_of(tiff, keys.find(1025) == 2.0);
+  const RasterPlace place = place_of(tiff, keys.find(1025) == 2.0);
   const auto rows = static_cast<Eigen::Index>(image.rows());
   const auto cols = static_cast<Eigen::Index>(image.cols());
   const double nodata = nodata_of(tiff);

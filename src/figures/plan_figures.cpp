@@ -45,9 +45,9 @@ struct ShownNumber {
 };
 
 /// One section: two numbers, the others as planned.
-class Section {
+class PlanSection {
  public:
-  Section(const DrawnPlan& drawn, std::size_t x, std::size_t y)
+  PlanSection(const DrawnPlan& drawn, std::size_t x, std::size_t y)
       : drawn_(drawn),
         x_(dig_parameter_table()[x]),
         y_(dig_parameter_table()[y]),
@@ -115,16 +115,16 @@ class Section {
 };
 
 /// Worths of digs from the planned start, in the unit shown; NaN where one cannot be dug.
-std::vector<double> worths(const DrawnPlan& drawn, std::vector<Section>& sections) {
+std::vector<double> worths(const DrawnPlan& drawn, std::vector<PlanSection>& sections) {
   const PlanSite& site = drawn.site;
   const Machine& machine = drawn.machine;
   const DigObjective& objective = drawn.search.objective;
   const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
   const DigLayout layout(machine, site.ground);
-  for (Section& section : sections) section.narrow(layout);
-  std::vector<double> found(sections.size() * Section::count, nan);
+  for (PlanSection& section : sections) section.narrow(layout);
+  std::vector<double> found(sections.size() * PlanSection::count, nan);
   parallel_for(found.size(), drawn.search.threads, [&](std::size_t i) {
-    const DigParameters dig = sections[i / Section::count].dig(i % Section::count);
+    const DigParameters dig = sections[i / PlanSection::count].dig(i % PlanSection::count);
     const auto path = layout.path_from(dig, drawn.plan.dig->start_x);
     if (!std::holds_alternative<DigPath>(path)) return;
     const auto dug =
@@ -210,7 +210,7 @@ Figure search_figure(const DrawnPlan& drawn) {
 }
 
 Figure landscape_figure(const DrawnPlan& drawn) {
-  std::vector<Section> sections = {Section(drawn, 0, 1), Section(drawn, 1, 2)};
+  std::vector<PlanSection> sections = {PlanSection(drawn, 0, 1), PlanSection(drawn, 1, 2)};
   const std::vector<double> worth = worths(drawn, sections);
   ColourScale scale;
   scale.high = 0.0;
@@ -223,9 +223,9 @@ Figure landscape_figure(const DrawnPlan& drawn) {
   figure.colour_bar = ColourBar{scale, worth_label(drawn.search.objective)};
   figure.rows.emplace_back();
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    const auto first = worth.begin() + static_cast<std::ptrdiff_t>(i * Section::count);
+    const auto first = worth.begin() + static_cast<std::ptrdiff_t>(i * PlanSection::count);
     figure.rows.back().push_back(
-        sections[i].panel({first, first + static_cast<std::ptrdiff_t>(Section::count)}, scale));
+        sections[i].panel({first, first + static_cast<std::ptrdiff_t>(PlanSection::count)}, scale));
   }
   figure.note =
       "All digs begin where the planned one does, at x = " + readable(drawn.plan.dig->start_x) +

@@ -21,7 +21,7 @@ constexpr double share_within = 0.5;        // of the cells as near, so that noi
 constexpr std::size_t fewest_of_side = 12;  // cells
 constexpr double common_sd = 0.004;         // of the rise of a side, which its cells share [m]
 constexpr double bend_share = 0.1;          // of a rise: sides are curved and cells have edges
-constexpr double widest = 0.2;              // prior of shift and growth [m]
+constexpr double widest_piece = 0.2;        // prior of shift and growth [m]
 constexpr double told = 0.02;               // a growth is told apart by as little [m]
 constexpr double most_sds = 3.0;
 
@@ -72,9 +72,9 @@ std::vector<Side> sides_of(const Piece& piece, const std::vector<ReliefCell>& ce
 class ShiftOfSides {
  public:
   explicit ShiftOfSides(bool may_grow) {
-    equations_.add(Eigen::Vector3d::UnitX(), 0.0, 1.0 / (widest * widest));
-    equations_.add(Eigen::Vector3d::UnitY(), 0.0, 1.0 / (widest * widest));
-    const double growth_sd = may_grow ? widest : 1e-3 * common_sd;
+    equations_.add(Eigen::Vector3d::UnitX(), 0.0, 1.0 / (widest_piece * widest_piece));
+    equations_.add(Eigen::Vector3d::UnitY(), 0.0, 1.0 / (widest_piece * widest_piece));
+    const double growth_sd = may_grow ? widest_piece : 1e-3 * common_sd;
     equations_.add(Eigen::Vector3d::UnitZ(), 0.0, 1.0 / (growth_sd * growth_sd));
   }
   void add(const Side& side) { equations_.add(row_of(side), side.rise, 1.0 / side.variance); }

@@ -24,20 +24,20 @@ using Unknowns = Eigen::Matrix<double, unknowns, 1>;
 using Information = Eigen::Matrix<double, unknowns, unknowns>;
 
 /// A square of cells.
-struct Block {
+struct SlopeBlock {
   Eigen::Vector3d place;     ///< from the middle of the scan [m]
   Eigen::Vector2d gradient;  ///< of the ground
   double points;
 };
 
-struct Blocks {
-  std::vector<Block> all;
+struct SlopeBlocks {
+  std::vector<SlopeBlock> all;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   Eigen::Vector2d reach = Eigen::Vector2d::Ones();  ///< from the middle [m]
 };
 
 /// The block with its first cell at `from`; false where too little of it is known.
-bool block_at(const Surface& surface, Cell from, Eigen::Index side, Block& block) {
+bool block_at(const Surface& surface, Cell from, Eigen::Index side, SlopeBlock& block) {
   constexpr double least_known = 0.8;  // ours
   constexpr double gentle = 0.15;      // ours: smaller gradients are noise and natural slope
   const HeightMap& map = surface.height;
@@ -58,22 +58,22 @@ bool block_at(const Surface& surface, Cell from, Eigen::Index side, Block& block
 }
 
 /// Blocks all over the scan, at most some thousands.
-Blocks blocks_of(const Surface& surface) {
+SlopeBlocks blocks_of(const Surface& surface) {
   constexpr Eigen::Index side = 5;        // ours [cell]
   constexpr Eigen::Index most = 1000000;  // ours: cells that are looked at
   const Eigen::ArrayXXd& z = surface.height.z;
   const Eigen::Index stride = side * (1 + z.size() / most);
-  Blocks blocks;
+  SlopeBlocks blocks;
   for (Eigen::Index c = 0; c + side <= z.cols(); c += stride) {
     for (Eigen::Index r = 0; r + side <= z.rows(); r += side) {
-      Block block;
+      SlopeBlock block;
       if (block_at(surface, {r, c}, side, block)) blocks.all.push_back(block);
     }
   }
   if (blocks.all.empty()) return blocks;
-  for (const Block& block : blocks.all) blocks.middle += block.place;
+  for (const SlopeBlock& block : blocks.all) blocks.middle += block.place;
   blocks.middle /= static_cast<double>(blocks.all.size());
-  for (Block& block : blocks.all) {
+  for (SlopeBlock& block : blocks.all) {
     block.place -= blocks.middle;
     blocks.reach = blocks.reach.cwiseMax(block.place.head<2>().cwiseAbs());
   }
@@ -81,9 +81,9 @@ Blocks blocks_of(const Surface& surface) {
 }
 
 /// Above the middle [m].
-double highest(const Blocks& blocks) {
+double highest(const SlopeBlocks& blocks) {
   double most = 0.0;
-  for (const Block& block : blocks.all) most = std::max(most, block.place.z());
+  for (const SlopeBlock& block : blocks.all) most = std::max(most, block.place.z());
   return most;
 }
 
@@ -103,9 +103,9 @@ Eigen::Matrix<double, 2, 3> tangent_change(const Eigen::Vector3d& point,
 /// Poisson regression of the points of the blocks by Fisher's scoring, with Levenberg's damping.
 class PointRegression {
  public:
-  explicit PointRegression(const Blocks& blocks) : blocks_(blocks) {
+  explicit PointRegression(const SlopeBlocks& blocks) : blocks_(blocks) {
     double points = 0.0;
-    for (const Block& block : blocks.all) points += block.points;
+    for (const SlopeBlock& block : blocks.all) points += block.points;
     best_.setZero();
     best_(0) = std::log(points / static_cast<double>(blocks.all.size()));
   }
@@ -140,7 +140,7 @@ class PointRegression {
     const Eigen::Vector3d sensor(inverse().x() / inverse().z(), inverse().y() / inverse().z(),
                                  1.0 / inverse().z());
     NormalEquations<2> equations;
-    for (const Block& block : blocks_.all) {
+    for (const SlopeBlock& block : blocks_.all) {
       const Eigen::Vector3d ray = sensor - block.place;
       equations.add({1.0, std::log(ray.z() / std::pow(ray.norm(), 3))},
                     terms_of(block).dot(best_.head<level_terms>()));
@@ -156,12 +156,12 @@ class PointRegression {
   }
 
  private:
-  double slope_factor(const Unknowns& at, const Block& block) const {
+  double slope_factor(const Unknowns& at, const SlopeBlock& block) const {
     constexpr double least = 0.1;  // ours: returns mix where a ray grazes the ground
     return std::max(least, 1.0 + block.gradient.dot(tangent_to(block.place, at.tail<3>())));
   }
 
-  Eigen::Matrix<double, level_terms, 1> terms_of(const Block& block) const {
+  Eigen::Matrix<double, level_terms, 1> terms_of(const SlopeBlock& block) const {
     const Eigen::Array2d at = block.place.head<2>().array() / blocks_.reach.array();
     Eigen::Matrix<double, level_terms, 1> terms;
     int next = 0;
@@ -173,13 +173,13 @@ class PointRegression {
     return terms;
   }
 
-  double expected(const Unknowns& at, const Block& block) const {
+  double expected(const Unknowns& at, const SlopeBlock& block) const {
     return std::exp(terms_of(block).dot(at.head<level_terms>())) * slope_factor(at, block);
   }
 
   double loss_of(const Unknowns& at) const {
     double loss = 0.0;
-    for (const Block& block : blocks_.all) {
+    for (const SlopeBlock& block : blocks_.all) {
       if (!(at(unknowns - 1) * block.place.z() < 1.0)) return HUGE_VAL;  // above the sensor
       const double mean = expected(at, block);
       loss += mean - block.points * std::log(mean);
@@ -191,7 +191,7 @@ class PointRegression {
     information_.setZero();
     score_.setZero();
     scatter_ = 0.0;
-    for (const Block& block : blocks_.all) {
+    for (const SlopeBlock& block : blocks_.all) {
       const double mean = expected(best_, block);
       Unknowns change;
       change << terms_of(block),
@@ -203,7 +203,7 @@ class PointRegression {
     }
   }
 
-  const Blocks& blocks_;
+  const SlopeBlocks& blocks_;
   Unknowns best_;
   Information information_;
   Unknowns score_;
@@ -249,7 +249,7 @@ std::optional<SensorPlace> infer_sensor(const Surface& surface) {
   constexpr double least_power = 0.9;     // ours
   constexpr double highest_ground = 0.6;  // ours: of the height, near which the fit is bounded
   if (surface.points.size() == 0) return std::nullopt;
-  const Blocks blocks = blocks_of(surface);
+  const SlopeBlocks blocks = blocks_of(surface);
   if (blocks.all.size() < fewest) return std::nullopt;
   PointRegression regression(blocks);
   regression.fit();

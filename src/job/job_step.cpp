@@ -10,11 +10,11 @@ namespace excavplan {
 namespace {
 
 // The most that is believed of a report, and that a record holds of many; ours.
-constexpr double most_mass = 1e6;     // [kg]
-constexpr double most_work = 1e12;    // [J]
-constexpr double farthest = 1e9;      // from the origin of the site's frame [m]
-constexpr double most_turned = 1e3;   // [rad]
-constexpr double latest_time = 1e11;  // as in a ground file [s]
+constexpr double most_mass = 1e6;      // [kg]
+constexpr double most_work = 1e12;     // [J]
+constexpr double farthest_step = 1e9;  // from the origin of the site's frame [m]
+constexpr double most_turned = 1e3;    // [rad]
+constexpr double latest_time = 1e11;   // as in a ground file [s]
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void require_report(const JobStep& step, const StepReport& report) {
   require_in("work of the joints" + of + " [J]", report.joint_work.value_or(0.0), 0.0, most_work);
   if (const auto& base = report.base) {
     for (const double place : {base->x, base->y, base->z})
-      require_in("base" + of + " [m]", place, -farthest, farthest);
+      require_in("base" + of + " [m]", place, -farthest_step, farthest_step);
     require_in("heading" + of + " [rad]", base->heading, -most_turned, most_turned);
   }
   if (step.digs()) return;

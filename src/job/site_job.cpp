@@ -67,7 +67,7 @@ constexpr double least_mass = 15.0;          // in a bucket that was worth it [k
 constexpr double least_taken = 0.3;          // of what a pass is to take off, else it is fruitless
 constexpr double poor_dig = 0.4;             // of what was foretold: the ground is not as expected
 constexpr double high_share = 1.0;           // of the tolerance: higher cells call for a pass
-constexpr double most_off = 0.042;           // share of cells that may stay so, or too low
+constexpr double most_off_shape = 0.042;     // share of cells that may stay so, or too low
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double surely_in_shape = 0.9;      // share of what is allowed, of a wide design
@@ -613,7 +613,7 @@ bool SiteJob::State::wants_passes(const BasePose& base) const {
     if (-above > tolerance) ++low;
     if (sure > heap_share * tolerance) ++heaps;
   });
-  return high + low > most_off * count || heaps > most_heaps * count;
+  return high + low > most_off_shape * count || heaps > most_heaps * count;
 }
 
 /// Whether little of what is within reach still stands, but for the steps of a face that lanes for

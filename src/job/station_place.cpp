@@ -23,7 +23,7 @@ constexpr double off_cut = 0.3;                    // of the tracks from ground 
 constexpr double deepest_rut = 0.15;               // more is dug
 constexpr std::array off_drops = {0.5, 0.8, 1.1};  // from ground that is deeper than that
 constexpr double highest_soil = 0.2;               // under the tracks
-constexpr double spare_reach = 0.5;                // to the dump, since what is laid there grows
+constexpr double reach_to_spare = 0.5;             // to the dump, since what is laid there grows
 constexpr double spare_turn = 0.3;                 // to it [rad], likewise
 constexpr double off_place = 0.1;          // where the machine comes to stand along the line
 constexpr double shift_step = 0.4;         // between the places that are looked at
@@ -148,7 +148,7 @@ std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& fram
       if (!overflowing) overflowing = moved;
       continue;
     }
-    if (dump_place(on.settings, on.map, on.now, base, {spare_reach})) return moved;
+    if (dump_place(on.settings, on.map, on.now, base, {reach_to_spare})) return moved;
     if (!meagre) meagre = moved;
   }
   return meagre ? meagre : overflowing;

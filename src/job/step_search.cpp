@@ -91,7 +91,7 @@ const std::array<double, 3> bite_drags = {0.0, 0.4, 0.8};        // [m]
 constexpr double least_bitten = 0.06;                            // of soil over the floor there [m]
 constexpr double least_strength = 0.2;   // of soil, over that of its kind, that is looked at
 constexpr double most_strength = 20.0;   // likewise
-constexpr int halvings = 6;              // of these bounds, by their logarithm
+constexpr int face_halvings = 6;         // of these bounds, by their logarithm
 constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
 constexpr double least_slope = 0.1;      // of ground, to be dug along it [rad]
@@ -104,7 +104,7 @@ constexpr double face_step = 0.1;                                    // likewise
 constexpr double steepest_drag = 1.0;                                // down a face [rad]
 constexpr double steepest_floor = 0.15;                              // else it is a face [rad]
 constexpr double on_face = 0.2;                                      // where its slope is told [m]
-const std::array<double, 2> steeper = {0.1, 0.3};                    // of a dig than its face [rad]
+const std::array<double, 2> steeper_rakes = {0.1, 0.3};              // of a dig than its face [rad]
 const std::array<double, 2> sweep_rakes = {0.42, 0.5};               // of a bucket along its floor
 const std::array<double, 4> sweep_layers = {0.1, 0.18, 0.3, 1.0};    // that one takes off [m]
 const std::array<double, 3> sweep_ends = {0.07, 0.3, 0.6};           // before the near end [m]
@@ -319,7 +319,7 @@ class StepSearch {
     const Terrain& ground = lanes_[lane].view.ground().terrain();
     double low = std::log(least_strength);
     double high = std::log(most_strength);
-    for (int i = 0; i < halvings; ++i) {
+    for (int i = 0; i < face_halvings; ++i) {
       const double middle = 0.5 * (low + high);
       const HeightMapSimulator simulator(machine_,
                                          with_strength(task_.settings.site.soil, std::exp(middle)),
@@ -552,7 +552,7 @@ class StepSearch {
     rules.drag_keeps_angle = true;
     const double face = std::atan((rules.floor(start) - rules.floor(start - on_face)) / on_face);
     if (!(face > steepest_floor)) return;
-    for (const double more : steeper) {
+    for (const double more : steeper_rakes) {
       const double angle = face + more;
       rules.drag_grade = face + 0.5 * more;
       if (rules.drag_grade > steepest_drag) break;

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double standard_gravity = 9.80665;  // [m/s^2], ISO 80000-3
-constexpr double rounding = 1e-12;
+constexpr double rounding_of_reach = 1e-12;
 constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 /// The same direction within half a turn of `center`.
@@ -39,12 +39,12 @@ std::variant<TwoLinks, Unreachable> bridge(const Vector2d& to, double first, dou
   if (std::isnan(cosine)) {
     return Unreachable{Unreachable::Reason::too_far, Joint::boom, infinity, first, infinity};
   }
-  if (cosine > 1.0 + rounding) {
+  if (cosine > 1.0 + rounding_of_reach) {
     const double reach = first + second;
     return Unreachable{Unreachable::Reason::too_far, Joint::boom, distance, reach,
                        distance - reach};
   }
-  if (cosine < -1.0 - rounding) {
+  if (cosine < -1.0 - rounding_of_reach) {
     const double hole = std::abs(first - second);
     return Unreachable{Unreachable::Reason::too_near, Joint::boom, distance, hole, hole - distance};
   }
@@ -68,7 +68,7 @@ std::variant<JointAngles, Unreachable> within_limits(const Machine& machine, Joi
                joints[i], excess};
     }
   }
-  if (!(worst.excess <= rounding)) return worst;
+  if (!(worst.excess <= rounding_of_reach)) return worst;
   return joints;
 }
 

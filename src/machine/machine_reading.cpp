@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double longest = 100.0;  // a larger length is an error of units [m]
-constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
+constexpr double longest_part = 100.0;  // a larger length is an error of units [m]
+constexpr std::array<Joint, 3> read_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 double positive(JsonObject& object, const std::string& key, double highest) {
   const double value = object.number(key);
@@ -29,16 +29,18 @@ double positive(JsonObject& object, const std::string& key, double highest) {
 
 void read_geometry(JsonObject file, Machine& machine) {
   const std::vector<double> pin = file.numbers("boom_pin_m", 2);
-  if (std::max(std::abs(pin[0]), std::abs(pin[1])) > longest) {
-    file.fail("boom_pin_m", "is further than " + number_text(longest) + " m from the origin");
+  if (std::max(std::abs(pin[0]), std::abs(pin[1])) > longest_part) {
+    file.fail("boom_pin_m", "is further than " + number_text(longest_part) + " m from the origin");
   }
   machine.boom_pin = {pin[0], pin[1]};
-  machine.boom_length = positive(file, "boom_length_m", longest);
-  machine.arm_length = positive(file, "arm_length_m", longest);
-  machine.bucket_length = positive(file, "bucket_length_m", longest);
-  machine.track_front = file.number("track_front_m", -longest, longest);
-  if (file.has("track_width_m")) machine.track_width = positive(file, "track_width_m", longest);
-  if (file.has("tail_radius_m")) machine.tail_radius = positive(file, "tail_radius_m", longest);
+  machine.boom_length = positive(file, "boom_length_m", longest_part);
+  machine.arm_length = positive(file, "arm_length_m", longest_part);
+  machine.bucket_length = positive(file, "bucket_length_m", longest_part);
+  machine.track_front = file.number("track_front_m", -longest_part, longest_part);
+  if (file.has("track_width_m"))
+    machine.track_width = positive(file, "track_width_m", longest_part);
+  if (file.has("tail_radius_m"))
+    machine.tail_radius = positive(file, "tail_radius_m", longest_part);
   file.ignore("sources");
   file.done();
 }
@@ -62,8 +64,8 @@ JointLimits read_limits(JsonObject file, Joint joint) {
 LinkMass read_link(JsonObject file) {
   LinkMass link;
   link.mass = positive(file, "mass_kg", 1e6);
-  link.along = file.number("center_along_m", -longest, longest);
-  link.across = file.number("center_across_m", -longest, longest);
+  link.along = file.number("center_along_m", -longest_part, longest_part);
+  link.across = file.number("center_across_m", -longest_part, longest_part);
   file.done();
   return link;
 }
@@ -71,8 +73,8 @@ LinkMass read_link(JsonObject file) {
 std::vector<Vector2d> read_profile(JsonObject& file) {
   std::vector<Vector2d> profile;
   for (JsonObject& corner : file.objects("profile")) {
-    const double along = corner.number("along_m", -longest, longest);
-    profile.emplace_back(along, corner.number("across_m", -longest, longest));
+    const double along = corner.number("along_m", -longest_part, longest_part);
+    profile.emplace_back(along, corner.number("across_m", -longest_part, longest_part));
     corner.done();
   }
   return profile;
@@ -85,7 +87,7 @@ Teeth read_teeth(JsonObject file) {
     file.fail("count", "is " + number_text(count) + ", must be a whole number in 1 .. 50");
   }
   teeth.count = static_cast<int>(count);
-  teeth.width = positive(file, "width_m", longest);
+  teeth.width = positive(file, "width_m", longest_part);
   teeth.thickness = positive(file, "thickness_m", 1.0);
   teeth.length = positive(file, "length_m", 1.0);
   teeth.angle = file.number("angle_rad");
@@ -101,8 +103,8 @@ Teeth read_teeth(JsonObject file) {
 Bucket read_bucket(JsonObject file, double bucket_length, double boom_length) {
   Bucket bucket;
   bucket.profile = read_profile(file);
-  bucket.width_outside = positive(file, "width_outside_m", longest);
-  bucket.width_inside = positive(file, "width_inside_m", longest);
+  bucket.width_outside = positive(file, "width_outside_m", longest_part);
+  bucket.width_inside = positive(file, "width_inside_m", longest_part);
   bucket.edge_thickness = positive(file, "edge_thickness_m", 1.0);
   bucket.edge_angle = positive(file, "edge_angle_rad", pi / 2.0);
   if (file.has("teeth")) bucket.teeth = read_teeth(file.object("teeth"));
@@ -115,7 +117,7 @@ Bucket read_bucket(JsonObject file, double bucket_length, double boom_length) {
 
 PolarPin read_pin(JsonObject& file) {
   PolarPin pin;
-  pin.distance = positive(file, "distance_m", longest);
+  pin.distance = positive(file, "distance_m", longest_part);
   pin.angle = file.number("angle_rad", -pi, pi);
   file.ignore("sources");
   return pin;
@@ -130,7 +132,7 @@ PolarPin read_lone_pin(JsonObject file) {
 Bar read_bar(JsonObject file) {
   Bar bar;
   bar.pin = read_pin(file);
-  bar.length = positive(file, "length_m", longest);
+  bar.length = positive(file, "length_m", longest_part);
   file.done();
   return bar;
 }
@@ -174,8 +176,8 @@ Piston read_piston(JsonObject file) {
 Hydraulics read_hydraulics(JsonObject file) {
   Hydraulics hydraulics;
   hydraulics.pump_flow = positive(file, "pump_flow_m3_per_s", 1.0);
-  for (std::size_t i = 0; i < all_joints.size(); ++i) {
-    hydraulics.pistons[i] = read_piston(file.object(name(all_joints[i])));
+  for (std::size_t i = 0; i < read_joints.size(); ++i) {
+    hydraulics.pistons[i] = read_piston(file.object(name(read_joints[i])));
   }
   file.ignore("sources");
   file.done();
@@ -184,7 +186,7 @@ Hydraulics read_hydraulics(JsonObject file) {
 
 void read_cylinders(JsonObject file, Machine& machine) {
   const auto cylinder = [&](std::size_t i) {
-    const char* key = name(all_joints[i]);
+    const char* key = name(read_joints[i]);
     const JointLimits& limits = machine.limits[i];
     try {
       return Cylinder(read_cylinder(file.object(key)), limits.lower, limits.upper);
@@ -203,12 +205,12 @@ Body read_body(JsonObject file, double track_front) {
   body.mass = positive(file, "mass_kg", 1e6);
   const std::vector<double> centre = file.numbers("center_m", 2);
   body.centre = {centre[0], centre[1]};
-  if (!(centre[1] > 0.0 && centre[1] <= longest)) {
+  if (!(centre[1] > 0.0 && centre[1] <= longest_part)) {
     file.fail("center_m", "has its z at " + number_text(centre[1]) +
-                              ", must be above 0 and at most " + number_text(longest));
+                              ", must be above 0 and at most " + number_text(longest_part));
   }
-  body.rear_edge = file.number("rear_edge_m", -longest, longest);
-  body.front_edge = file.number("front_edge_m", -longest, track_front);
+  body.rear_edge = file.number("rear_edge_m", -longest_part, longest_part);
+  body.front_edge = file.number("front_edge_m", -longest_part, track_front);
   if (!(body.rear_edge < centre[0] && centre[0] < body.front_edge)) {
     file.fail("center_m", "has its x at " + number_text(centre[0]) +
                               ", must lie between rear_edge_m = " + number_text(body.rear_edge) +
@@ -244,8 +246,9 @@ Swing read_swing(JsonObject file) {
 Eigen::Isometry3d read_root(JsonObject file) {
   const std::vector<double> at = file.numbers("position_m", 3);
   for (const double number : at) {
-    if (std::abs(number) > longest) {
-      file.fail("position_m", "is further than " + number_text(longest) + " m from the origin");
+    if (std::abs(number) > longest_part) {
+      file.fail("position_m",
+                "is further than " + number_text(longest_part) + " m from the origin");
     }
   }
   Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
@@ -275,9 +278,9 @@ Machine read_machine(JsonObject file) {
   read_geometry(file.object("geometry"), machine);
   JsonObject joints = file.object("joints");
   JsonObject links = file.object("links");
-  for (std::size_t i = 0; i < all_joints.size(); ++i) {
-    const char* key = name(all_joints[i]);
-    machine.limits[i] = read_limits(joints.object(key), all_joints[i]);
+  for (std::size_t i = 0; i < read_joints.size(); ++i) {
+    const char* key = name(read_joints[i]);
+    machine.limits[i] = read_limits(joints.object(key), read_joints[i]);
     machine.links[i] = read_link(links.object(key));
   }
   machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length, machine.boom_length);
@@ -289,9 +292,9 @@ Machine read_machine(JsonObject file) {
   if (file.has("robot_joints")) {
     JsonObject robot = file.object("robot_joints");
     machine.robot_joints = read_robot_joints(robot);
-    for (std::size_t i = 0; i < all_joints.size(); ++i) {
+    for (std::size_t i = 0; i < read_joints.size(); ++i) {
       if (!machine.robot_joints[i].name.empty()) continue;
-      robot.fail(std::string(name(all_joints[i])) + ".name",
+      robot.fail(std::string(name(read_joints[i])) + ".name",
                  "is empty; boom, arm and bucket must have a name");
     }
   }

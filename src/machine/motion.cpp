@@ -25,19 +25,19 @@ constexpr double least_jerk = 0.1;                           // [rad/s^3]
 constexpr double drift = 0.002;        // of the tip by one joint, from the smoothing in time [m]
 constexpr double checked_step = 1e-3;  // of cylinders, flow, power and torque of the swing [s]
 constexpr double spare_drive = 1e-3;   // of their limits, for the time between the checks
-constexpr double rounding = 1e-9;      // of a joint beyond its limit [rad]
+constexpr double rounding_of_limits = 1e-9;  // of a joint beyond its limit [rad]
 
 void check_way(const Machine& machine, const Way& way) {
   bool moves = false, swings = false;
   for (std::size_t i = 0; i < way.poses.size(); ++i) {
     const WayPose& pose = way.poses[i];
     const std::string which = "pose " + std::to_string(i) + " of the way";
-    check_joints(machine, pose.joints, which, rounding);
+    check_joints(machine, pose.joints, which, rounding_of_limits);
     require(pose.torque.allFinite(), which + " has a torque that is not finite");
     require_in(which + ": payload [kg]", pose.payload, 0.0, 1e9);
     if (i == 0) continue;
     require(pose.phase >= way.poses[i - 1].phase, which + ": its phase is before the last one's");
-    moves = moves || (pose.joints - way.poses[i - 1].joints).norm() > rounding;
+    moves = moves || (pose.joints - way.poses[i - 1].joints).norm() > rounding_of_limits;
     swings = swings || pose.joints[3] != way.poses.front().joints[3];
   }
   require(moves, "the way has fewer than 2 poses that differ");

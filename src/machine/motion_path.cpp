@@ -15,9 +15,9 @@ constexpr double corner_turn = 0.2;     // a smaller turn within a phase is no c
 constexpr double least_rounded = 1e-3;  // at what is no corner [m]
 constexpr double longest_cell = 0.01;   // [rad]
 
-class Layout {
+class PathLayout {
  public:
-  Layout(const Machine& machine, const Way& way, double tolerance)
+  PathLayout(const Machine& machine, const Way& way, double tolerance)
       : machine_(machine), tolerance_(tolerance) {
     for (const WayPose& pose : way.poses) {
       if (poses_.empty() || (pose.joints - poses_.back().joints).norm() > standstill) {
@@ -100,7 +100,7 @@ class Layout {
 }  // namespace
 
 SmoothPath smooth_path(const Machine& machine, const Way& way, double tolerance) {
-  return Layout(machine, way, tolerance).path();
+  return PathLayout(machine, way, tolerance).path();
 }
 
 }  // namespace excavplan

@@ -18,9 +18,9 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Ours:
-constexpr double margin = 0.1;      // to the ground, below and to every side [m]
-constexpr double slack = 0.01;      // of the way off and onto the ground [m]
-constexpr double under_link = 0.1;  // of a link's body below its line from pin to pin [m]
+constexpr double clear_margin = 0.1;  // to the ground, below and to every side [m]
+constexpr double slack = 0.01;        // of the way off and onto the ground [m]
+constexpr double under_link = 0.1;    // of a link's body below its line from pin to pin [m]
 constexpr double cells_in_reach = 200.0;
 constexpr double track_height = 0.5;  // of the undercarriage, over track_front: 0.9 m of a zx120
 
@@ -96,7 +96,7 @@ Surroundings::Surroundings(const Machine& machine, const Terrain& ground)
   undercarriage_ = {-front, -half, front, half};
   own_radius_ = std::hypot(front, half);
   const double cell = seen_.cell_size;
-  cells_of_margin_ = std::max(1.0, std::ceil(margin / cell - 1e-9));
+  cells_of_margin_ = std::max(1.0, std::ceil(clear_margin / cell - 1e-9));
   // A place between points is at most spacing (sqrt(1/2) + 1/2) from one: beside it on the machine,
   // and half a step of the motion away.
   near_ = 0.8 * cells_of_margin_ * cell;
@@ -150,8 +150,8 @@ bool Surroundings::stands_at(double x, double y) const {
 }
 
 void Surroundings::put_beside() {
-  const double tail = machine_.tail_swing_radius() + margin + seen_.cell_size;
-  const double low = track_top() - margin;
+  const double tail = machine_.tail_swing_radius() + clear_margin + seen_.cell_size;
+  const double low = track_top() - clear_margin;
   for (Index col = 0; col < seen_.z.cols(); ++col) {
     for (Index row = 0; row < seen_.z.rows(); ++row) {
       const Eigen::Vector3d top(seen_.x(col), seen_.y(row), seen_.z(row, col));
@@ -170,8 +170,9 @@ std::optional<Clearance> Surroundings::tail_obstacle(const FrontJoints& from,
     const double aside = top.y() * std::cos(swing) - top.x() * std::sin(swing);
     return ahead >= -tail - more && ahead <= half + more && std::abs(aside) <= half + more;
   };
-  const double steps = std::ceil(std::abs(to[3] - from[3]) * (tail + margin) / seen_.cell_size);
-  const double near = margin + 0.5 * seen_.cell_size;
+  const double steps =
+      std::ceil(std::abs(to[3] - from[3]) * (tail + clear_margin) / seen_.cell_size);
+  const double near = clear_margin + 0.5 * seen_.cell_size;
   for (const Eigen::Vector3d& top : beside_) {
     if (within(top, from[3], 0.0)) continue;
     for (double i = 1.0; i <= steps; ++i) {
@@ -233,7 +234,8 @@ Clearance Surroundings::least(const FrontJoints& joints, double spacing, double 
 }
 
 Clearance Surroundings::margin_at(const FrontJoints& joints) const {
-  return least(joints, near_, margin, [this](Index row, Index col) { return highest_(row, col); });
+  return least(joints, near_, clear_margin,
+               [this](Index row, Index col) { return highest_(row, col); });
 }
 
 Clearance Surroundings::standing(const FrontJoints& joints) const {
@@ -254,7 +256,7 @@ std::optional<Clearance> Surroundings::obstacle(const FrontJoints& from,
   const double count = parts(from, to, near_);
   for (double i = 0.0; i <= count; ++i) {
     const Clearance there = margin_at(from + i / count * (to - from));
-    if (there.height < margin) return there;
+    if (there.height < clear_margin) return there;
   }
   return std::nullopt;
 }
@@ -273,18 +275,18 @@ std::optional<Clearance> Surroundings::obstacle_leaving(const FrontJoints& from,
     const double z = seen_.z(row, col);
     return stands(row, col) || std::isnan(z) ? lowest_(row, col) : z;
   };
-  const double deepest = std::min(margin, standing(from).height) - slack;
+  const double deepest = std::min(clear_margin, standing(from).height) - slack;
   const double count = parts(from, to, fine_);
   bool clear = false;
   for (double i = 0.0; i <= count; ++i) {
     const FrontJoints at = from + i / count * (to - from);
     const Clearance there = margin_at(at);
-    if (there.height >= margin) {
+    if (there.height >= clear_margin) {
       clear = true;
       continue;
     }
     if (clear) return there;
-    const Clearance close = least(at, fine_, margin, height_of);
+    const Clearance close = least(at, fine_, clear_margin, height_of);
     if (close.height < deepest) return close;
   }
   return std::nullopt;

@@ -122,7 +122,7 @@ DigSearchOptions only_known(const DigSearchOptions& options, std::vector<KnownDi
   return known;
 }
 
-Found<UncertainDigSearchResult> nothing(std::optional<NearestDig> nearest, bool stopped) {
+Found<UncertainDigSearchResult> found_nothing(std::optional<NearestDig> nearest, bool stopped) {
   Found<UncertainDigSearchResult> none;
   none.nearest = std::move(nearest);
   none.stopped = stopped;
@@ -154,13 +154,13 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
   prepare_checkpoints(options, soils.size());
   require_own_checkpoint(machine, soils, terrain, options);
   const BestForEach best = best_for_each(machine, soils, terrain, options);
-  if (best.digs().empty()) return nothing(best.nearest(), best.stopped);
+  if (best.digs().empty()) return found_nothing(best.nearest(), best.stopped);
   const DigSearchOptions from_bests =
       best.stopped ? only_known(options, best.digs()) : from_known(options, best.digs());
   DigProblem problem(machine, soils, terrain, from_bests);
   const SearchResult found = problem.run();
   if (!found.feasible()) {
-    return nothing(problem.nearest_of(found), found.stopped_by == StopReason::cancelled);
+    return found_nothing(problem.nearest_of(found), found.stopped_by == StopReason::cancelled);
   }
   UncertainDigSearchResult result;
   DigProblem::Best mean = problem.best_of(found);

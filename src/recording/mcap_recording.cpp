@@ -14,7 +14,7 @@
 namespace excavplan {
 namespace {
 
-constexpr std::string_view mcap_magic = "\x89MCAP0\r\n";
+constexpr std::string_view magic_of_mcap = "\x89MCAP0\r\n";
 constexpr std::uint64_t record_head = 9;                 // opcode and length [byte]
 constexpr std::uint64_t footer_size = record_head + 20;  // [byte]
 constexpr std::uint64_t message_head = 22;               // before the data of a message [byte]
@@ -133,17 +133,18 @@ class McapRecording : public ChunkedContainer {
 
 std::uint64_t McapRecording::read_header() {
   const Bytes start =
-      file_.read(0, std::min<std::uint64_t>(file_.size(), mcap_magic.size()), "magic");
-  if (start.view() != mcap_magic) {
+      file_.read(0, std::min<std::uint64_t>(file_.size(), magic_of_mcap.size()), "magic");
+  if (start.view() != magic_of_mcap) {
     file_.fail(0, in_quotes(start.view()), "the magic of MCAP version 0, '\\x89MCAP0\\r\\n'");
   }
-  std::uint64_t end = mcap_magic.size();
+  std::uint64_t end = magic_of_mcap.size();
   skipped_.guard(no_time, [&] {
     end += record_head + content_length(end, file_.size(), Opcode::header, "header");
   });
   is_closed_ =
-      file_.size() - end >= footer_size + mcap_magic.size() &&
-      file_.read(file_.size() - mcap_magic.size(), mcap_magic.size(), "magic").view() == mcap_magic;
+      file_.size() - end >= footer_size + magic_of_mcap.size() &&
+      file_.read(file_.size() - magic_of_mcap.size(), magic_of_mcap.size(), "magic").view() ==
+          magic_of_mcap;
   return end;
 }
 
@@ -168,7 +169,7 @@ std::uint64_t McapRecording::content_length(std::uint64_t offset, std::uint64_t 
 /// counts or indexes, all of which are optional
 bool McapRecording::read_summary(std::uint64_t data_start) {
   if (!is_closed_) return false;
-  const std::uint64_t footer_start = file_.size() - mcap_magic.size() - footer_size;
+  const std::uint64_t footer_start = file_.size() - magic_of_mcap.size() - footer_size;
   const Bytes bytes = file_.read(footer_start, footer_size, "footer");
   content_length(footer_start, footer_start + footer_size, Opcode::footer, "footer");
   ByteReader fields = reader(footer_start, bytes);
@@ -437,7 +438,7 @@ std::string_view McapRecording::message_at(const MessagePlace& place) {
 /// Reads what is whole, and looks for the next chunk behind what is no record. The end of a file
 /// that is not complete is just missing.
 void McapRecording::scan(std::uint64_t data_start) {
-  const std::uint64_t end = file_.size() - (is_closed_ ? mcap_magic.size() + footer_size : 0);
+  const std::uint64_t end = file_.size() - (is_closed_ ? magic_of_mcap.size() + footer_size : 0);
   for (std::uint64_t offset = data_start; end - offset >= record_head;) {
     const Bytes bytes = file_.read(offset, record_head, "record");
     ByteReader head = reader(offset, bytes);

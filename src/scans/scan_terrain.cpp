@@ -64,7 +64,7 @@ Scan cropped(const Scan& scan, const Rectangle& extent, double around) {
 
 bool is_empty(const Rectangle& r) { return !(r.x_max > r.x_min && r.y_max > r.y_min); }
 
-std::string text(const Rectangle& r) {
+std::string text_of(const Rectangle& r) {
   return "x = " + readable(r.x_min) + " .. " + readable(r.x_max) + " m, y = " + readable(r.y_min) +
          " .. " + readable(r.y_max) + " m";
 }
@@ -75,7 +75,7 @@ void require_width(const Scan& scan, const Rectangle& seen) {
   if (narrow) throw FrameError(name_of(scan) + ": " + narrow->message);
   if (std::min(seen.x_max - seen.x_min, seen.y_max - seen.y_min) >= narrowest) return;
   throw FrameError(name_of(scan) + ": the points within the machine's reach lie on a line, " +
-                   text(seen) + ", must spread over " + readable(narrowest) +
+                   text_of(seen) + ", must spread over " + readable(narrowest) +
                    " m or more in both directions");
 }
 
@@ -94,7 +94,7 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
   throw FrameError(
       name_of(scan) + ": " +
       (points == 0 ? "no point lies" : "only " + std::to_string(points) + " points lie") +
-      " within the machine's reach, " + text(extent) +
+      " within the machine's reach, " + text_of(extent) +
       " in the site frame (origin on the swing axis at ground level, x forward)" +
       (unit ? "; " + unit->message : ""));
 }
@@ -216,8 +216,8 @@ Rectangle own_place(const Machine& machine) {
 }
 
 /// The ground of an extent and what stands on it.
-struct SeenGround {
-  SeenGround(const Scan& scan, const Rectangle& extent, double cell_size)
+struct GroundOfScan {
+  GroundOfScan(const Scan& scan, const Rectangle& extent, double cell_size)
       : points(seen_of(scan, extent)),
         cell(std::max(cell_size, cell_of(points))),
         widest_gap(std::max(widest_filled, widest_filled_cells * cell)),
@@ -241,7 +241,7 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
           "> 0 m and finite");
   std::optional<Warning> no_data;
   const Scan data = of_data(scan, &no_data);
-  const SeenGround seen(data, extent, cell_size);
+  const GroundOfScan seen(data, extent, cell_size);
   ScannedTerrain result{seen.terrain, data.doubts};
   if (no_data) result.warnings.push_back(std::move(*no_data));
   const double wide = std::sqrt(enough_for_two / seen.points.density);
@@ -290,7 +290,7 @@ HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
   const Rectangle extent = standing_extent(machine);
   const double cell_size = 2.0 * usual_cell(machine);
   try {
-    return SeenGround(of_data(scan), extent, cell_size).terrain.surface();
+    return GroundOfScan(of_data(scan), extent, cell_size).terrain.surface();
   } catch (const FrameError&) {  // a scan of the ground ahead alone
     return flat_ground(extent, cell_size, std::nan(""));
   }

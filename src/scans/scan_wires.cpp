@@ -14,13 +14,13 @@ using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
 // Ours:
-constexpr double beside = 0.1;     // of a return to the line of its wire [m]
-constexpr double sagging = 0.5;    // of a return to that line in height [m]
-constexpr double near = 0.3;       // returns that tell how wide something is [m]
-constexpr double widest = 0.045;   // standard deviation of these across a line [m]
-constexpr double shortest = 0.15;  // between returns that give a direction [m]
-constexpr double noise = 0.03;     // of a return in plan [m]
-constexpr std::size_t most_points = 300, most_wires = 20, fewest_returns = 3;
+constexpr double beside = 0.1;           // of a return to the line of its wire [m]
+constexpr double sagging = 0.5;          // of a return to that line in height [m]
+constexpr double near = 0.3;             // returns that tell how wide something is [m]
+constexpr double widest_spread = 0.045;  // standard deviation of these across a line [m]
+constexpr double shortest = 0.15;        // between returns that give a direction [m]
+constexpr double noise = 0.03;           // of a return in plan [m]
+constexpr std::size_t most_wire_points = 300, most_wires = 20, fewest_of_wire = 3;
 
 /// Principal axes of points in plan.
 struct Spread {
@@ -52,7 +52,7 @@ Points thin(const Points& hanging) {
     for (const Vector3d& q : hanging) {
       if ((p - q).head<2>().norm() <= near) around.push_back(q);
     }
-    if (spread_of(around).across <= widest) kept.push_back(p);
+    if (spread_of(around).across <= widest_spread) kept.push_back(p);
   }
   return kept;
 }
@@ -101,11 +101,11 @@ Wire wire_of(const Points& line) {
 
 std::vector<Wire> find_wires(const Points& hanging) {
   Points few;
-  const std::size_t stride = hanging.size() / (10 * most_points) + 1;
+  const std::size_t stride = hanging.size() / (10 * most_wire_points) + 1;
   for (std::size_t i = 0; i < hanging.size(); i += stride) few.push_back(hanging[i]);
   Points left = thin(few);
-  if (left.size() > most_points) {
-    const std::size_t each = left.size() / most_points + 1;
+  if (left.size() > most_wire_points) {
+    const std::size_t each = left.size() / most_wire_points + 1;
     Points fewer;
     for (std::size_t i = 0; i < left.size(); i += each) fewer.push_back(left[i]);
     left = std::move(fewer);
@@ -113,7 +113,7 @@ std::vector<Wire> find_wires(const Points& hanging) {
   std::vector<Wire> wires;
   while (wires.size() < most_wires) {
     const Points line = best_line(left);
-    if (line.size() < fewest_returns) break;
+    if (line.size() < fewest_of_wire) break;
     wires.push_back(wire_of(line));
     left.erase(std::remove_if(left.begin(), left.end(),
                               [&](const Vector3d& p) {

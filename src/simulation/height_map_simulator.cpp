@@ -28,10 +28,10 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
-constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
-constexpr double first_room = 0.5;       // of the window around the path at first [m]
-constexpr double rounding = 1e-15;       // of a volume [m^3]
-constexpr double spill_error = 1e-8;     // of the soil that has no room in the bucket [m^3]
+constexpr int sweeps_at_the_end = 2000;       // until all is at rest; a dig needs some tens
+constexpr double first_room = 0.5;            // of the window around the path at first [m]
+constexpr double rounding_of_ground = 1e-15;  // of a volume [m^3]
+constexpr double spill_error = 1e-8;          // of the soil that has no room in the bucket [m^3]
 
 /// One dig from its first pose to its end.
 class Dig {
@@ -236,7 +236,7 @@ class Dig {
     const double spilled = std::min(fill_, pile);
     if (!(spilled > 0.0)) return;
     top_of_pile_ = top;
-    fill_ = fill_ - spilled > rounding ? fill_ - spilled : 0.0;
+    fill_ = fill_ - spilled > rounding_of_ground ? fill_ - spilled : 0.0;
     moving_.include(pile_.lay(top, spilled / pile));
   }
 
@@ -331,8 +331,8 @@ class Dig {
   CellBlock moving_;
 };
 
-std::shared_ptr<const HeightMapModel> model_of(const Machine& machine, const SoilKind& soil,
-                                               double density_percent) {
+std::shared_ptr<const HeightMapModel> map_model_of(const Machine& machine, const SoilKind& soil,
+                                                   double density_percent) {
   require_machine(machine);
   return std::make_shared<const HeightMapModel>(machine, soil, density_percent);
 }
@@ -341,7 +341,7 @@ std::shared_ptr<const HeightMapModel> model_of(const Machine& machine, const Soi
 
 HeightMapSimulator::HeightMapSimulator(const Machine& machine, const SoilKind& soil,
                                        double density_percent)
-    : model_(model_of(machine, soil, density_percent)) {}
+    : model_(map_model_of(machine, soil, density_percent)) {}
 
 std::string HeightMapSimulator::name() {
   return "height-map " + std::to_string(height_map_simulator_version);

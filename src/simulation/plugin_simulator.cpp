@@ -24,7 +24,7 @@
 namespace excavplan {
 namespace {
 
-constexpr std::size_t longest_shown = 400;  // of a library's text in a message [byte]
+constexpr std::size_t longest_plugin_text = 400;  // of a library's text in a message [byte]
 constexpr const char* entry_name = "excavplan_simulator_entry";
 
 // ---- the library --------------------------------------------------------------------------------
@@ -51,7 +51,7 @@ std::mutex& one_thread() {
 
 std::string last_loader_error() {
   const char* text = ::dlerror();
-  return text == nullptr ? "no reason given" : safe_text(text, longest_shown);
+  return text == nullptr ? "no reason given" : safe_text(text, longest_plugin_text);
 }
 
 const excavplan_simulator* entry_of(const std::string& file) {
@@ -199,7 +199,7 @@ void call(const Library& library, const Call& function) {
   }
   if (code == 0) return;
   error.back() = '\0';
-  const std::string text = safe_text(error.data(), longest_shown);
+  const std::string text = safe_text(error.data(), longest_plugin_text);
   refuse("it says: " + (text.empty() ? "error " + std::to_string(code) : text));
 }
 

@@ -20,9 +20,9 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice.
-constexpr double look_ahead = 0.25;  // for level and slope of the ground [m]
-constexpr double rounding = 1e-9;    // of a row that the bucket only touches [-]
-constexpr double growth = 0.5;       // by which a section grows, and its room ahead at first [m]
+constexpr double look_ahead = 0.25;           // for level and slope of the ground [m]
+constexpr double rounding_of_section = 1e-9;  // of a row that the bucket only touches [-]
+constexpr double growth = 0.5;  // by which a section grows, and its room ahead at first [m]
 
 double square(double value) { return value * value; }
 
@@ -245,7 +245,7 @@ class MapWriter {
 
 SoilSection::SoilSection(const Terrain& terrain, const GroundSoil& soil, double width,
                          const TipReach& reach)
-    : swath_(terrain.bank, width, rounding),
+    : swath_(terrain.bank, width, rounding_of_section),
       ground_(terrain, soil,
               with_room(cells_under(terrain.bank, swath_, reach), terrain.bank, reach)),
       width_(width),

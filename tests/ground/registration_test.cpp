@@ -24,7 +24,7 @@ using scenes::degree;
 using scenes::Ground;
 using scenes::ScanErrors;
 
-constexpr double cell = 0.05;
+constexpr double cell_of_scans = 0.05;
 
 ScanErrors rough_ground() {
   ScanErrors errors;
@@ -39,7 +39,7 @@ Surface surface_of(const Height& height, const Eigen::Isometry3d& motion, double
                    std::uint64_t seed) {
   Random random(seed);
   Surface surface;
-  surface.height = flat_ground(scenes::dig_extent, cell);
+  surface.height = flat_ground(scenes::dig_extent, cell_of_scans);
   const Eigen::Isometry3d back = motion.inverse();
   for (Eigen::Index col = 0; col < surface.height.z.cols(); ++col) {
     for (Eigen::Index row = 0; row < surface.height.z.rows(); ++row) {

@@ -49,6 +49,10 @@ TEST(JobBeside, NoneIsForUprightWallsNorWhereAMachineCannotStandOrDump) {
   held.settings.site.machine.swing->lower = -1.4;
   held.settings.site.machine.swing->upper = 1.4;
   EXPECT_FALSE(beside(held)) << "its swing ends before the trench";
+  HandMadeJob light = leaning_trench();
+  Body& body = light.settings.site.machine.body.value();
+  body.centre.x() = 0.75 * body.front_edge;
+  EXPECT_FALSE(beside(light)) << "swung to a side it stands on the edge of its tracks";
 }
 
 TEST(JobBeside, NoneIsWhereTheTopOfTheFarFaceIsOutOfReach) {

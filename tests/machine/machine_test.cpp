@@ -42,7 +42,7 @@ JointAngles random_joints(const Machine& machine, Random& random) {
 json shipped_json() { return json::parse(std::ifstream(zx120_path())); }
 
 /// What load_machine says about the shipped file after a change.
-std::string complaint_about(const std::function<void(json&)>& change) {
+std::string machine_complaint(const std::function<void(json&)>& change) {
   json file = shipped_json();
   change(file);
   return test::complaint_about_file(file);
@@ -391,11 +391,11 @@ TEST(MachineFile, EveryNumberHasASource) {
 
 /// What is said about the shipped file with one value changed.
 std::string set(const char* pointer, const json& value) {
-  return complaint_about([&](json& f) { f[json::json_pointer(pointer)] = value; });
+  return machine_complaint([&](json& f) { f[json::json_pointer(pointer)] = value; });
 }
 
 TEST(MachineFile, NamesKeyValueAndRuleOfWhatItRefuses) {
-  EXPECT_EQ(complaint_about([](json&) {}), "no error");
+  EXPECT_EQ(machine_complaint([](json&) {}), "no error");
   EXPECT_EQ(set("/geometry/boom_length_m", 0.0),
             "geometry.boom_length_m: is 0, must be above 0 and at most 100");
   EXPECT_EQ(set("/geometry/arm_length_m", -2.5),
@@ -426,7 +426,7 @@ TEST(MachineFile, NamesKeyValueAndRuleOfWhatItRefuses) {
   EXPECT_EQ(set("/bucket/color", "orange"), "bucket.color: is not a key of this file");
   EXPECT_EQ(set("/format", "excavplan-soil"),
             "format: is 'excavplan-soil', expected 'excavplan-machine'");
-  EXPECT_EQ(complaint_about([](json& f) { f["links"].erase("boom"); }), "links.boom: is missing");
+  EXPECT_EQ(machine_complaint([](json& f) { f["links"].erase("boom"); }), "links.boom: is missing");
 }
 
 TEST(MachineFile, MayStateTheWidthOfTheTracks) {
@@ -486,7 +486,7 @@ TEST(MachineFile, MayLeaveOutTheTeeth) {
 
 TEST(MachineFile, NamesKeyValueAndRuleOfTeethItRefuses) {
   const auto set = [](const std::string& key, const json& value) {
-    return complaint_about([&](json& f) { f["bucket"]["teeth"][key] = value; });
+    return machine_complaint([&](json& f) { f["bucket"]["teeth"][key] = value; });
   };
   for (const auto& [value, text] :
        std::vector<std::pair<json, std::string>>{{0, "0"}, {-5, "-5"}, {2.5, "2.5"}, {51, "51"}}) {
@@ -507,7 +507,7 @@ TEST(MachineFile, NamesKeyValueAndRuleOfTeethItRefuses) {
   EXPECT_EQ(set("angle_rad", 2),
             "bucket.teeth.angle_rad: is 2, must be above 0 and below 1.5707963267948966");
   EXPECT_EQ(set("color", "grey"), "bucket.teeth.color: is not a key of this file");
-  EXPECT_EQ(complaint_about([](json& f) { f["bucket"]["teeth"].erase("length_m"); }),
+  EXPECT_EQ(machine_complaint([](json& f) { f["bucket"]["teeth"].erase("length_m"); }),
             "bucket.teeth.length_m: is missing");
 }
 
@@ -530,7 +530,7 @@ TEST(MachineFile, MayLimitTheSwing) {
   EXPECT_EQ(
       set("/swing/acceleration_rad_per_s2", 20.0),
       "swing.acceleration_rad_per_s2: is 20, must be in 0.01 .. 5: is it in degrees or turns?");
-  EXPECT_EQ(complaint_about([](json& f) {
+  EXPECT_EQ(machine_complaint([](json& f) {
               f["swing"].update({{"lower_rad", 1.0}, {"upper_rad", -1.0}});
             }),
             "swing.upper_rad: is -1, must be above lower_rad = 1");
@@ -567,7 +567,7 @@ TEST(MachineFile, MayLeaveOutBodySwingAndEngine) {
 
 TEST(MachineFile, NamesKeyValueAndRuleOfABodyItRefuses) {
   const auto set = [](const char* pointer, const json& value) {
-    return complaint_about([&](json& f) { f["body"][json::json_pointer(pointer)] = value; });
+    return machine_complaint([&](json& f) { f["body"][json::json_pointer(pointer)] = value; });
   };
   const std::string edges = ", must lie between rear_edge_m = -1.44 and front_edge_m = 1.44";
   EXPECT_EQ(set("/mass_kg", 0), "body.mass_kg: is 0, must be above 0 and at most 1e+06");
@@ -646,7 +646,7 @@ void scale(json& value, const std::string& key, double size) {
 TEST(MachineFile, OfOneToAHundredTonnesAreTaken) {
   for (const double tonnes : {0.8, 3.0, 12.7, 40.0, 120.0}) {
     const double size = std::cbrt(tonnes / 12.7);
-    EXPECT_EQ(complaint_about([&](json& f) { scale(f, "", size); }), "no error") << tonnes;
+    EXPECT_EQ(machine_complaint([&](json& f) { scale(f, "", size); }), "no error") << tonnes;
   }
 }
 
@@ -672,7 +672,7 @@ TEST(Machine, FingerprintDependsOnBodySwingAndEngine) {
 
 TEST(MachineFile, RefusesProfilesThatAreNoConvexPolygon) {
   const auto with_profile = [](const std::vector<Vector2d>& corners) {
-    return complaint_about([&](json& f) {
+    return machine_complaint([&](json& f) {
       f["bucket"]["profile"] = json::array();
       for (const Vector2d& c : corners) {
         f["bucket"]["profile"].push_back({{"along_m", c.x()}, {"across_m", c.y()}});

@@ -31,12 +31,13 @@ using test::zx120;
 
 constexpr double tolerance = 1e-6;  // of a limit, for rounding in differences of small steps
 
-double flat(double) { return 0.0; }
+double flat_ground_at(double) { return 0.0; }
 
 DigPath fixed_path(double step = 0.025) {
   DigPathOptions options;
   options.step = step;
-  return std::get<DigPath>(make_dig_path(zx120(), paper_fixed_path(), 6.0, flat, options));
+  return std::get<DigPath>(
+      make_dig_path(zx120(), paper_fixed_path(), 6.0, flat_ground_at, options));
 }
 
 DigPath path_through(const std::vector<JointAngles>& joints) {
@@ -583,7 +584,7 @@ TEST(Trajectory, StopsWhereTheJointsTurnBack) {
 
 TEST(Trajectory, ComesDownBeforeItDigs) {
   DigPath path = fixed_path();
-  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat));
+  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat_ground_at));
   const Trajectory trajectory = time_dig_path(zx120(), path);
   expect_well_formed(trajectory);
   EXPECT_EQ(trajectory.points.front().phase, DigPhase::approach);
@@ -746,7 +747,8 @@ TEST(Trajectory, RoughPathsKeepTheLimitsToo) {
 TEST(Trajectory, DigsWithEmptyOrTinyPhasesAreTimed) {
   for (const double push : {0.0, 1e-310, 1e-9, 1e-3}) {
     for (const double drag : {0.0, 1e-310, 1e-9, 1e-3}) {
-      const auto path = std::get<DigPath>(make_dig_path(zx120(), {0.7, push, drag}, 6.0, flat));
+      const auto path =
+          std::get<DigPath>(make_dig_path(zx120(), {0.7, push, drag}, 6.0, flat_ground_at));
       const Trajectory trajectory = time_dig_path(zx120(), path, {1.0});
       expect_well_formed(trajectory);
       ASSERT_NO_FATAL_FAILURE(expect_within(used_of(zx120(), trajectory), 1.0));
@@ -795,7 +797,7 @@ TEST(Trajectory, BadInputIsAnErrorThatNamesIt) {
 
 Trajectory with_approach() {
   DigPath path = fixed_path();
-  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat));
+  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat_ground_at));
   return time_dig_path(zx120(), path);
 }
 

@@ -31,7 +31,7 @@ namespace {
 
 using Ground = std::function<double(double x, double y)>;
 
-const double front = 1.8, half = 1.3;  // of its tracks [m]
+const double front_of_tracks = 1.8, half = 1.3;  // of its tracks [m]
 
 struct Scene {
   std::string kind;
@@ -45,7 +45,7 @@ struct Beside {
   int side = 0;  ///< ahead, left, behind, right
   /// From the tracks outward, negative under them [m].
   double away(double x, double y) const {
-    const double all[] = {x - front, y - half, -x - front, -y - half};
+    const double all[] = {x - front_of_tracks, y - half, -x - front_of_tracks, -y - half};
     return all[side];
   }
   /// Along the side, 0 in its middle [m].
@@ -98,7 +98,7 @@ Scene cut(Random& random, bool bad) {
   const double from = bad ? random.uniform(0.0, 0.25) : random.uniform(0.55, 0.8);
   const double width = wide ? random.uniform(1.2, 2.0) : random.uniform(0.35, 0.5);
   return {"cut", !bad, random.uniform() < 0.5, [=](double x, double y) {
-            const double in = x - front - from;
+            const double in = x - front_of_tracks - from;
             return in > 0.0 && in < length && std::abs(y) < width ? -depth : 0.0;
           }};
 }
@@ -106,8 +106,8 @@ Scene cut(Random& random, bool bad) {
 Scene spoil(Random& random, bool bad) {
   const double high = random.uniform(0.4, 1.0), radius = random.uniform(0.7, 1.2);
   const double heading = random.uniform(0.0, 2.0 * pi);
-  const double x0 =
-      bad ? random.uniform(-front, front) : (front + radius + 0.2) * std::cos(heading);
+  const double x0 = bad ? random.uniform(-front_of_tracks, front_of_tracks)
+                        : (front_of_tracks + radius + 0.2) * std::cos(heading);
   const double y0 = bad ? random.uniform(-half, half)
                         : (half + radius + 0.2) * (std::sin(heading) < 0.0 ? -1.0 : 1.0);
   return {"spoil", !bad, false, [=](double x, double y) {
@@ -139,7 +139,7 @@ Scene scene_of(std::uint64_t seed) {
 /// Whether a sensor on the cab sees a place.
 bool is_in_view(const Ground& ground, double x, double y, double z) {
   const double x0 = 0.5, y0 = 0.4, z0 = 3.0;
-  if (std::abs(x) < front + 0.1 && std::abs(y) < half + 0.1) return false;
+  if (std::abs(x) < front_of_tracks + 0.1 && std::abs(y) < half + 0.1) return false;
   constexpr int steps = 60;
   for (int i = 1; i < steps; ++i) {
     const double t = static_cast<double>(i) / steps;
@@ -271,7 +271,7 @@ TEST(StandingGround, EveryCheckHasBothItsSigns) {
   }
   const auto step = [](int side, double from, double z) {
     return codes_on([=](double x, double y) {
-      const double all[] = {x - front, y - half, -x - front, -y - half};
+      const double all[] = {x - front_of_tracks, y - half, -x - front_of_tracks, -y - half};
       return all[side] > from ? z : 0.0;
     });
   };
@@ -286,7 +286,8 @@ TEST(StandingGround, EveryCheckHasBothItsSigns) {
 TEST(StandingGround, TheOwnCutIsStraightAheadAndNotTooNear) {
   const auto cut = [](double from, double width) {
     return codes_on([=](double x, double y) {
-      return x > front + from && x < front + 3.0 && std::abs(y) < width ? -1.2 : 0.0;
+      return x > front_of_tracks + from && x < front_of_tracks + 3.0 && std::abs(y) < width ? -1.2
+                                                                                            : 0.0;
     });
   };
   EXPECT_EQ(cut(0.5, 0.4), Codes{});
@@ -298,7 +299,7 @@ TEST(StandingGround, WhatLiesInTheShadowOfAnEdgeCountsFromTheEdge) {
   const double unseen = std::nan("");
   const auto behind = [&](double seen_from) {
     return codes_on([=](double x, double) {
-      const double away = -x - front;
+      const double away = -x - front_of_tracks;
       return away < 1.2 ? 0.0 : away < seen_from ? unseen : -2.0;
     });
   };
@@ -308,7 +309,7 @@ TEST(StandingGround, WhatLiesInTheShadowOfAnEdgeCountsFromTheEdge) {
 
 TEST(StandingGround, SaysWhichGroundItDoesNotKnow) {
   const StandingGround found = standing_ground(
-      zx120(), map_of([](double x, double) { return x > front ? 0.0 : std::nan(""); }));
+      zx120(), map_of([](double x, double) { return x > front_of_tracks ? 0.0 : std::nan(""); }));
   ASSERT_EQ(found.warnings.size(), 1U);
   EXPECT_EQ(found.warnings[0].code, WarningCode::ground_at_tracks_unseen);
   EXPECT_FALSE(found.warnings[0].ends_trust);
@@ -316,7 +317,8 @@ TEST(StandingGround, SaysWhichGroundItDoesNotKnow) {
   EXPECT_TRUE(found.height && found.rise_left && !found.rise_ahead);
   EXPECT_NEAR(found.seen, 0.28, 0.05);
   EXPECT_TRUE(standing_ground(zx120(), map_of([](double x, double) {
-                                return x > front ? 0.3 * (x - front) : std::nan("");
+                                return x > front_of_tracks ? 0.3 * (x - front_of_tracks)
+                                                           : std::nan("");
                               }))
                   .warnings[0]
                   .ends_trust == false)

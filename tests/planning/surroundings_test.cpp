@@ -40,7 +40,7 @@ Terrain terrain_of(const Ground& ground) {
 }
 
 /// That of the ground within a box, else level.
-Ground box(double x_min, double y_min, double x_max, double y_max, double height) {
+Ground box_on_ground(double x_min, double y_min, double x_max, double y_max, double height) {
   return [=](double x, double y) {
     return x >= x_min && x <= x_max && y >= y_min && y <= y_max ? height : 0.0;
   };
@@ -91,7 +91,7 @@ double clearance(const Machine& machine, const Trajectory& motion, const Ground&
   return least;
 }
 
-DigPath fixed_path() {
+DigPath path_fixed() {
   const auto flat = [](double) { return 0.0; };
   DigPath path = std::get<DigPath>(make_dig_path(zx120(), paper_fixed_path(), 6.0, flat));
   path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat));
@@ -106,7 +106,7 @@ CycleWayOptions whole_cycle(double dump_height = 3.0) {
 }
 
 std::variant<Way, BlockedWay> cycle_over(const Terrain& ground, double dump_height = 3.0) {
-  return way_of_cycle(zx120(), ground, fixed_path(), {{}, 500.0}, whole_cycle(dump_height));
+  return way_of_cycle(zx120(), ground, path_fixed(), {{}, 500.0}, whole_cycle(dump_height));
 }
 
 bool has(const Way& way, const std::string& code) {
@@ -115,24 +115,24 @@ bool has(const Way& way, const std::string& code) {
   });
 }
 
-double level(double, double) { return 0.0; }
+double level_at(double, double) { return 0.0; }
 
 /// A berm of 1.5 m at (3, 3), on the way of a swing of 90 degrees at 5 m.
 TEST(Surroundings, ABermBesideTheDigIsPassedAbove) {
-  const Ground berm = box(2.5, 2.5, 3.5, 3.5, 1.5);
+  const Ground berm = box_on_ground(2.5, 2.5, 3.5, 3.5, 1.5);
   const Way straight = std::get<Way>(cycle_over(level_swing_ground(zx120()), 2.0));
   const Way over = std::get<Way>(cycle_over(terrain_of(berm), 2.0));
   const auto least = [&](const Way& way, const Ground& ground) {
     return clearance(zx120(), time_way(zx120(), way), ground, DigPhase::swing, DigPhase::back);
   };
   EXPECT_LT(least(straight, berm), -0.3) << "on the way";
-  EXPECT_GT(least(straight, level), 0.09);
+  EXPECT_GT(least(straight, level_at), 0.09);
   EXPECT_GT(least(over, berm), 0.0);
   EXPECT_TRUE(over.warnings.empty());
 }
 
 TEST(Surroundings, AWallThatIsTooHighBlocksTheSwing) {
-  const auto blocked = cycle_over(terrain_of(box(2.0, 2.5, 4.0, 3.5, 9.0)));
+  const auto blocked = cycle_over(terrain_of(box_on_ground(2.0, 2.5, 4.0, 3.5, 9.0)));
   const auto* stop = std::get_if<BlockedWay>(&blocked);
   ASSERT_NE(stop, nullptr);
   EXPECT_EQ(stop->phase, DigPhase::swing);
@@ -154,7 +154,7 @@ TEST(Surroundings, NoPostOfOneCellPassesBetween) {
     };
     const double x = corner(radius * std::cos(angle), map.origin.x());
     const double y = corner(radius * std::sin(angle), map.origin.y());
-    const Ground post = box(x, y, x + cell, y + cell, 1.6);
+    const Ground post = box_on_ground(x, y, x + cell, y + cell, 1.6);
     const auto laid = cycle_over(terrain_of(post), 2.0);
     if (const Way* way = std::get_if<Way>(&laid)) {
       const Trajectory motion = time_way(zx120(), *way);
@@ -183,7 +183,7 @@ TEST(Surroundings, TheWayMayBeginInATrench) {
   options.start.emplace();
   *options.start << joints, swing;
   const auto begun = [&](const Ground& ground) {
-    return way_of_cycle(zx120(), terrain_of(ground), fixed_path(), {{}, 500.0}, options);
+    return way_of_cycle(zx120(), terrain_of(ground), path_fixed(), {{}, 500.0}, options);
   };
   for (const double half : {0.37, 0.5}) {
     const auto laid = begun(trench(half));
@@ -192,7 +192,7 @@ TEST(Surroundings, TheWayMayBeginInATrench) {
     EXPECT_LT(way.poses[1].joints[0], joints[0]);
     EXPECT_EQ(way.poses[1].joints[3], swing);
   }
-  const auto level_ground = begun(level);
+  const auto level_ground = begun(level_at);
   const auto* stop = std::get_if<BlockedWay>(&level_ground);
   ASSERT_NE(stop, nullptr);
   EXPECT_NE(stop->message.find("in the ground at x = "), std::string::npos) << stop->message;
@@ -209,8 +209,9 @@ TEST(Surroundings, APostAboveTheBucketBlocksTheWayOffTheGround) {
   const double under_arm = 0.5 * (at.arm_pin.y() + at.bucket_pin.y());
   const Vector2d place = x * Vector2d(std::cos(0.9), std::sin(0.9));
   const auto laid = way_of_cycle(
-      zx120(), terrain_of(box(place.x(), place.y(), place.x() + 0.05, place.y() + 0.05, 9.0)),
-      fixed_path(), {{}, 500.0}, options);
+      zx120(),
+      terrain_of(box_on_ground(place.x(), place.y(), place.x() + 0.05, place.y() + 0.05, 9.0)),
+      path_fixed(), {{}, 500.0}, options);
   EXPECT_GT(under_arm, 1.0);
   EXPECT_TRUE(std::holds_alternative<BlockedWay>(laid));
 }
@@ -321,7 +322,7 @@ TEST(Surroundings, WhatStandsHigherThanTheDumpHeightAtTheDumpPlaceIsTold) {
 
 TEST(Surroundings, ABucketThatCannotKeepItsAttitudeIsToldOf) {
   Machine stiff = zx120();
-  const DigPath path = fixed_path();
+  const DigPath path = path_fixed();
   stiff.limits[2].upper = path.poses.back().joints[2] + 0.05;
   const auto laid =
       way_of_cycle(stiff, level_swing_ground(stiff), path, {{}, 500.0}, whole_cycle());
@@ -332,23 +333,23 @@ TEST(Surroundings, ABucketThatCannotKeepItsAttitudeIsToldOf) {
 
 Ground undercarriage(const Machine& machine) {
   const double half = 0.5 * machine.undercarriage_width(), length = machine.track_front;
-  return box(-length, -half, length, half, 0.5 * length);
+  return box_on_ground(-length, -half, length, half, 0.5 * length);
 }
 
 TEST(Surroundings, TheUndercarriageDoesNotTurnWithTheSwing) {
   CycleWayOptions options;
   const auto from = [&](const FrontJoints& start) {
     options.start = start;
-    return way_of_cycle(zx120(), level_swing_ground(zx120()), fixed_path(), {{}, 0.0}, options);
+    return way_of_cycle(zx120(), level_swing_ground(zx120()), path_fixed(), {{}, 0.0}, options);
   };
-  const Ground core = box(-1.65, -1.0, 1.65, 1.0, 0.9);
+  const Ground core = box_on_ground(-1.65, -1.0, 1.65, 1.0, 0.9);
   FrontJoints folded;
   double deepest = 0.0;
   for (double boom = -1.0; boom < 0.3; boom += 0.05) {
     for (double bucket = -0.5; bucket < 2.4; bucket += 0.1) {
       const FrontJoints joints = front_at(boom, 2.65, bucket);
       const double height = clearance(zx120(), joints, core);
-      if (height >= deepest || clearance(zx120(), joints, level) < 0.0) continue;
+      if (height >= deepest || clearance(zx120(), joints, level_at) < 0.0) continue;
       deepest = height;
       folded = joints;
     }
@@ -425,11 +426,11 @@ TEST(Surroundings, GroundThatFineCellsKnowInPartDoesNotBecomeLower) {
 }
 
 TEST(Surroundings, TheSwingBeginsOverTheGroundThatTheDigLeaves) {
-  const Ground heap = box(3.0, 0.6, 7.0, 1.2, 1.6);
+  const Ground heap = box_on_ground(3.0, 0.6, 7.0, 1.2, 1.6);
   DigLoad load = {{}, 500.0};
   const auto swung = [&] {
     const auto laid =
-        way_of_cycle(zx120(), level_swing_ground(zx120()), fixed_path(), load, whole_cycle(2.0));
+        way_of_cycle(zx120(), level_swing_ground(zx120()), path_fixed(), load, whole_cycle(2.0));
     return clearance(zx120(), time_way(zx120(), std::get<Way>(laid)), heap, DigPhase::swing,
                      DigPhase::back);
   };

@@ -20,6 +20,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/json.hpp"
+#include "results/plan_results.hpp"
 #include "support/machine_file.hpp"
 
 namespace excavplan {
@@ -45,6 +46,17 @@ TEST(Results, OfADigAreItsNumbers) {
   EXPECT_DOUBLE_EQ(json.at("payload_mass_kg"), scene().dig.payload_mass);
   EXPECT_DOUBLE_EQ(json.at("energy_kj"), scene().dig.energy.total / 1000.0);
   EXPECT_TRUE(json.at("stall").is_null());
+}
+
+TEST(Results, AScanOfAJobTellsWhereTheFrontLooksAndADigOnItsPath) {
+  JobStep step;
+  step.swung = 1.25;
+  step.what = JobAction::scan;
+  EXPECT_EQ(job_step_json(step).at("swung_rad"), 1.25);
+  EXPECT_TRUE(job_step_json(step).at("path").is_null());
+  step.what = JobAction::dig;
+  EXPECT_EQ(job_step_json(step).at("path").at("swung_rad"), 1.25);
+  EXPECT_FALSE(job_step_json(step).contains("swung_rad"));
 }
 
 TEST(Results, ForceHistoryHasARowPerStep) {

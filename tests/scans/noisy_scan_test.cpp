@@ -15,7 +15,7 @@ namespace excavplan {
 namespace {
 
 /// Of level ground, seen from 3 m above the origin.
-Scan level_scan(double z, double reach) {
+Scan flat_scan(double z, double reach) {
   auto cloud = std::make_shared<Cloud>();
   cloud->sensor_origin = Eigen::Vector3d(0.0, 0.0, 3.0);
   for (double x = 0.5; x < reach; x += 0.02) {
@@ -31,7 +31,7 @@ Scan level_scan(double z, double reach) {
 TEST(NoisyScan, ItsHeightsErrAsStatedForTheirRange) {
   const SensorErrors stereo = {0.001, 0.0012, 2.0};
   const ScanHeights heights =
-      heights_of(level_scan(0.0, 6.0), stereo, flat_ground({0.0, -1.0, 8.0, 1.0}, 0.05));
+      heights_of(flat_scan(0.0, 6.0), stereo, flat_ground({0.0, -1.0, 8.0, 1.0}, 0.05));
   const auto sd_at = [&](double x) {
     const auto at = *cell_at(flat_ground({0.0, -1.0, 8.0, 1.0}, 0.05), x, 0.0);
     return heights.sd(at.row, at.col);

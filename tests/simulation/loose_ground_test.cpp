@@ -73,8 +73,8 @@ class LooseGround : public testing::Test {
   const Machine machine_ = test::zx120_held_down();
 };
 
-using Simulators = testing::Types<HeightMapSimulator, SectionSimulator>;
-TYPED_TEST_SUITE(LooseGround, Simulators);
+using LooseSimulators = testing::Types<HeightMapSimulator, SectionSimulator>;
+TYPED_TEST_SUITE(LooseGround, LooseSimulators);
 
 void expect_same(const DigResult& a, const DigResult& b, double share) {
   EXPECT_NEAR(a.energy.total, b.energy.total, share * b.energy.total);

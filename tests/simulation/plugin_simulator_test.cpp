@@ -22,11 +22,11 @@ using test::dug;
 using test::error_of;
 
 const std::string folder = EXCAVPLAN_PLUGINS;
-const std::string example = folder + "/libcutting_resistance.so";
-std::string odd(const std::string& how) { return folder + "/libodd_" + how + ".so"; }
+const std::string example_plugin = folder + "/libcutting_resistance.so";
+std::string odd_plugin(const std::string& how) { return folder + "/libodd_" + how + ".so"; }
 
 TEST(PluginSimulator, DigsAndBalances) {
-  const SimulatorKind kind = plugin_simulator(example);
+  const SimulatorKind kind = plugin_simulator(example_plugin);
   EXPECT_TRUE(contains(kind.name, "cutting resistance 1 (library ")) << kind.name;
   for (const double density : {0.0, 60.0}) {
     test::expect_sound_digs(*kind.make(test::zx120(), test::loam(), density));
@@ -35,14 +35,14 @@ TEST(PluginSimulator, DigsAndBalances) {
 }
 
 TEST(PluginSimulator, LoadsBeyondTheMachineStallIt) {
-  const DigResult dig = dug(plugin_simulator(odd("strong")));
+  const DigResult dig = dug(plugin_simulator(odd_plugin("strong")));
   ASSERT_TRUE(dig.stall);
   EXPECT_EQ(dig.torques.size(), 5U);
   EXPECT_EQ(dig.peak_force, 1e6);
 }
 
 TEST(PluginSimulator, IsTheSameFromManyThreads) {
-  for (const std::string& file : {example, odd("one_at_a_time")}) {
+  for (const std::string& file : {example_plugin, odd_plugin("one_at_a_time")}) {
     const SimulatorKind kind = plugin_simulator(file);
     const auto simulator = kind.make(test::zx120(), test::loam(), 40.0);
     const DigResult first = test::dug(*simulator);
@@ -60,10 +60,10 @@ TEST(PluginSimulator, IsTheSameFromManyThreads) {
 }
 
 TEST(PluginSimulator, AnotherBuildHasAnotherName) {
-  EXPECT_NE(plugin_simulator(odd("sound")).name, plugin_simulator(odd("risen")).name);
-  EXPECT_EQ(plugin_simulator(odd("sound")).name, plugin_simulator(odd("sound")).name);
+  EXPECT_NE(plugin_simulator(odd_plugin("sound")).name, plugin_simulator(odd_plugin("risen")).name);
+  EXPECT_EQ(plugin_simulator(odd_plugin("sound")).name, plugin_simulator(odd_plugin("sound")).name);
   const auto identity = [](double density) {
-    return plugin_simulator(example).make(test::zx120(), test::loam(), density)->identity();
+    return plugin_simulator(example_plugin).make(test::zx120(), test::loam(), density)->identity();
   };
   EXPECT_EQ(identity(40.0), identity(40.0));
   EXPECT_NE(identity(40.0), identity(41.0));
@@ -81,18 +81,18 @@ TEST(PluginSimulator, FilesThatAreNone) {
   EXPECT_TRUE(contains(said(folder + "/libno_simulator.so"),
                        "lacks the function excavplan_simulator_entry"));
   EXPECT_TRUE(
-      contains(said(odd("other_version")),
+      contains(said(odd_plugin("other_version")),
                "is made for version 2 of simulator_plugin.h, this program takes version 1"));
-  EXPECT_TRUE(contains(said(odd("no_description")), "does not know version 1"));
-  EXPECT_TRUE(contains(said(odd("small")), "describes itself in 16 bytes"));
-  EXPECT_TRUE(contains(said(odd("no_dig")), "lacks one of create, dig and destroy"));
-  EXPECT_TRUE(contains(said(odd("tolerant")), "mass_tolerance is 0.9, must be in 0 .. 0.2"));
-  EXPECT_TRUE(contains(said(odd("nameless")), "name is empty"));
+  EXPECT_TRUE(contains(said(odd_plugin("no_description")), "does not know version 1"));
+  EXPECT_TRUE(contains(said(odd_plugin("small")), "describes itself in 16 bytes"));
+  EXPECT_TRUE(contains(said(odd_plugin("no_dig")), "lacks one of create, dig and destroy"));
+  EXPECT_TRUE(contains(said(odd_plugin("tolerant")), "mass_tolerance is 0.9, must be in 0 .. 0.2"));
+  EXPECT_TRUE(contains(said(odd_plugin("nameless")), "name is empty"));
 }
 
 TEST(PluginSimulator, BadAnswersAreRefusedByName) {
   const auto said = [](const std::string& how, double density = 40.0) {
-    const std::string text = error_of([&] { dug(plugin_simulator(odd(how)), density); });
+    const std::string text = error_of([&] { dug(plugin_simulator(odd_plugin(how)), density); });
     EXPECT_TRUE(contains(text, "simulator 'odd 1 (library ")) << text;
     return text;
   };
