@@ -54,7 +54,7 @@ set(thorough_sensing_test
   SurveyPlan.PredictsTheScatterOfSimulatedSurveys
   SceneTest.CalibrationDigsInTheSimulatorGiven
   SceneTest.TheUsualLawIsTheShippedOneOfTheVerySameSoil)
-# A whole job; that a job which is resumed after each step goes on alike stays, its history is looked at here.
+# Whole jobs.
 set(thorough_job_test
   JobHistory.OfAJobThatWasResumedAfterEachStepIsThatOfOneThatWasNot
   SiteJob.WithExactScansATrenchIsDugToItsDesign)

@@ -18,10 +18,6 @@ using std::string_view;
 
 constexpr std::size_t longest_name = 40;  // that a message shows [byte]
 
-[[noreturn]] void refuse_line(const std::string& path, std::size_t line, const std::string& why) {
-  throw Error(ErrorKind::bad_file, path + ": line " + std::to_string(line) + ": " + why);
-}
-
 /// The delimiter of a first line as spreadsheets read and write it, "sep=;".
 std::optional<char> stated_delimiter(string_view text) {
   constexpr string_view key = "sep=";

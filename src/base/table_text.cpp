@@ -14,11 +14,6 @@ namespace {
 
 using std::string_view;
 
-[[noreturn]] void refuse_text_line(const std::string& path, std::size_t line,
-                                   const std::string& why) {
-  throw Error(ErrorKind::bad_file, path + ": line " + std::to_string(line) + ": " + why);
-}
-
 bool begins_with(string_view text, string_view start) {
   return text.substr(0, start.size()) == start;
 }
@@ -69,14 +64,14 @@ std::string from_utf16(const std::string& path, string_view bytes, bool big_endi
   out.reserve(bytes.size() / 2);
   std::size_t line = 1;
   for (std::size_t at = 0; at < bytes.size(); at += 2) {
-    if (at + 1 == bytes.size()) refuse_text_line(path, line, "UTF-16 ends in half a character");
+    if (at + 1 == bytes.size()) refuse_line(path, line, "UTF-16 ends in half a character");
     std::uint32_t code = unit(at);
     const bool is_high = code >= 0xD800 && code < 0xDC00;
     if (is_high && at + 3 < bytes.size() && unit(at + 2) >= 0xDC00 && unit(at + 2) < 0xE000) {
       at += 2;
       code = 0x10000 + ((code - 0xD800) << 10U) + (unit(at) - 0xDC00);
     } else if (code >= 0xD800 && code < 0xE000) {
-      refuse_text_line(path, line, "UTF-16 with half a pair of characters");
+      refuse_line(path, line, "UTF-16 with half a pair of characters");
     }
     if (code == '\n') ++line;
     append_utf8(out, code);
@@ -88,7 +83,7 @@ void require_printable(const std::string& path, string_view text) {
   std::size_t line = 1;
   while (!text.empty()) {
     const string_view one = text.substr(0, text.find('\n'));
-    if (!is_printable(one)) refuse_text_line(path, line, "found a control character");
+    if (!is_printable(one)) refuse_line(path, line, "found a control character");
     text.remove_prefix(std::min(text.size(), one.size() + 1));
     ++line;
   }
@@ -98,7 +93,7 @@ void require_printable(const std::string& path, string_view text) {
 void require_order_of_mark(const std::string& path, string_view bytes, bool big_endian) {
   const std::size_t low = big_endian ? 1 : 0;
   if (bytes.size() < 4 || bytes[low] != '\0' || bytes[low + 2] != '\0') return;
-  refuse_text_line(path, 1, "UTF-16 whose bytes are in the other order than its mark states");
+  refuse_line(path, 1, "UTF-16 whose bytes are in the other order than its mark states");
 }
 
 std::string from_marked_utf16(const std::string& path, string_view bytes, bool big_endian) {
@@ -107,6 +102,10 @@ std::string from_marked_utf16(const std::string& path, string_view bytes, bool b
 }
 
 }  // namespace
+
+void refuse_line(const std::string& path, std::size_t line, const std::string& why) {
+  throw Error(ErrorKind::bad_file, path + ": line " + std::to_string(line) + ": " + why);
+}
 
 std::string table_text(const std::string& path, std::string content) {
   const auto is_zero = [&](std::size_t at) { return content.size() > 1 && content[at] == '\0'; };
@@ -173,7 +172,7 @@ string_view TableRecords::quoted_field() {
   const std::size_t begin = ++at_;
   bool has_quotes = false;
   while (true) {
-    if (at_ >= text_.size()) refuse_text_line(path_, line_, "a quote is not closed");
+    if (at_ >= text_.size()) refuse_line(path_, line_, "a quote is not closed");
     if (text_[at_] == '\n') ++next_line_;
     if (text_[at_] == '"') {
       if (at_ + 1 >= text_.size() || text_[at_ + 1] != '"') break;
@@ -188,7 +187,7 @@ string_view TableRecords::quoted_field() {
   skip_blanks();
   if (at_ < text_.size() && text_[at_] != delimiter_ && text_[at_] != '#' &&
       !ends_line(text_[at_])) {
-    refuse_text_line(path_, next_line_, "found text behind the quotes of " + in_quotes(field));
+    refuse_line(path_, next_line_, "found text behind the quotes of " + in_quotes(field));
   }
   return trimmed(field);
 }

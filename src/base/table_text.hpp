@@ -16,6 +16,9 @@ namespace excavplan {
 
 constexpr std::size_t most_table_columns = 1000;  ///< ours
 
+/// @throws Error (bad_file) of a line of a file
+[[noreturn]] void refuse_line(const std::string& path, std::size_t line, const std::string& why);
+
 /// Content of a file as UTF-8 without a byte order mark; UTF-16 is known by its mark or its zero
 /// bytes. @throws Error (bad_file) with the line if it has a control character or is no UTF-16
 std::string table_text(const std::string& path, std::string content);

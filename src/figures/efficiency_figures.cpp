@@ -6,14 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "drawing/bars.hpp"
 #include "results/efficiency_results.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double within_95 = 1.96;
 
 std::string name_of(const DigEfficiency& run) {
   return std::filesystem::path(run.file).stem().string();
@@ -30,7 +29,8 @@ DrawnBar bar_of(const DigEfficiency& run) {
   const Measured value = run.value();
   DrawnBar bar{value.value};
   if (std::isfinite(value.sd)) {
-    bar.interval = {value.value - within_95 * value.sd, value.value + within_95 * value.sd};
+    bar.interval = {value.value - two_sided_95_percent * value.sd,
+                    value.value + two_sided_95_percent * value.sd};
   }
   return bar;
 }

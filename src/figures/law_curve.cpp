@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "figures/law_curve.hpp"
 
+#include "base/statistics.hpp"
+
 namespace excavplan {
 namespace {
 
 constexpr int steps = 100;
-constexpr double law_within_95 = 1.96;
 
 }  // namespace
 
@@ -23,7 +24,7 @@ Points law_band(const DensityForm& form) {
   Points above;
   Points below;
   for (const Eigen::Vector2d& point : law_curve(form)) {
-    const double half = law_within_95 * residual_sd_at(form, point.y());
+    const double half = two_sided_95_percent * residual_sd_at(form, point.y());
     above.emplace_back(point.x(), point.y() + half);
     below.emplace_back(point.x(), point.y() - half);
   }

@@ -33,7 +33,7 @@ constexpr double quartile_to_sd = 3.1386;  // a quarter of normal residuals is w
 constexpr double least_bend = 0.02;        // ours: a shift of rough ground bends it by no more [-]
 constexpr double significant = 11.345;     // chi-square, three degrees of freedom, 99 %
 constexpr int rounds = 25;
-constexpr std::size_t most_registered = 20000;  // while weights are iterated; all at the end
+constexpr std::size_t most_weighted = 20000;  // while weights are iterated; all at the end
 
 /// Half-sample mode (Robertson and Cryer 1974).
 double half_sample_mode(std::vector<double> values) {
@@ -94,7 +94,7 @@ class Aligner {
 
   Motion fitted() {
     Motion motion = Motion::Zero();
-    stride_ = samples_.size() / most_registered + 1;
+    stride_ = samples_.size() / most_weighted + 1;
     std::vector<double> changes;
     for (std::size_t i = 0; i < samples_.size(); i += stride_) {
       changes.push_back(samples_[i].change);

@@ -91,7 +91,7 @@ const std::array<double, 3> bite_drags = {0.0, 0.4, 0.8};        // [m]
 constexpr double least_bitten = 0.06;                            // of soil over the floor there [m]
 constexpr double least_strength = 0.2;   // of soil, over that of its kind, that is looked at
 constexpr double most_strength = 20.0;   // likewise
-constexpr int face_halvings = 6;         // of these bounds, by their logarithm
+constexpr int strength_halvings = 6;     // of these bounds, by their logarithm
 constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
 constexpr double least_slope = 0.1;      // of ground, to be dug along it [rad]
@@ -319,7 +319,7 @@ class StepSearch {
     const Terrain& ground = lanes_[lane].view.ground().terrain();
     double low = std::log(least_strength);
     double high = std::log(most_strength);
-    for (int i = 0; i < face_halvings; ++i) {
+    for (int i = 0; i < strength_halvings; ++i) {
       const double middle = 0.5 * (low + high);
       const HeightMapSimulator simulator(machine_,
                                          with_strength(task_.settings.site.soil, std::exp(middle)),

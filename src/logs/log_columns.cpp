@@ -124,10 +124,6 @@ std::optional<ColumnName> suffixed(string_view name) {
   return std::nullopt;
 }
 
-[[noreturn]] void refuse_columns(const std::string& file, const std::string& why) {
-  throw Error(ErrorKind::bad_file, file + ": " + why);
-}
-
 /// Of the unit that the column's name says, or else of the stated one.
 double factor_in(const std::string& file, const std::string& name, Measure measure,
                  const std::string& stated) {
@@ -136,21 +132,25 @@ double factor_in(const std::string& file, const std::string& name, Measure measu
   const auto of_own = factor_of(own, measure);
   const auto of_stated = factor_of(stated, measure);
   if (of_own && !stated.empty() && of_own != of_stated) {
-    refuse_columns(file, column + " is in " + in_quotes(own) + " by its name, but " +
-                             in_quotes(stated) + " is stated as its unit");
+    refuse_log(file, column + " is in " + in_quotes(own) + " by its name, but " +
+                         in_quotes(stated) + " is stated as its unit");
   }
   if (of_own) return *of_own;
   const std::string& unit = stated.empty() ? own : stated;
   if (unit.empty()) {
-    refuse_columns(file, column + " states no unit, expected one as in 'NAME [UNIT]', of " +
-                             usual_units(measure) + ": state the unit");
+    refuse_log(file, column + " states no unit, expected one as in 'NAME [UNIT]', of " +
+                         usual_units(measure) + ": state the unit");
   }
   if (of_stated) return *of_stated;
-  refuse_columns(
-      file, column + " is in " + in_quotes(unit) + ", expected one of " + usual_units(measure));
+  refuse_log(file,
+             column + " is in " + in_quotes(unit) + ", expected one of " + usual_units(measure));
 }
 
 }  // namespace
+
+void refuse_log(const std::string& file, const std::string& why) {
+  throw Error(ErrorKind::bad_file, file + ": " + why);
+}
 
 std::optional<double> factor_of(string_view unit, Measure measure) {
   const std::string text = normalised(unit);
@@ -200,9 +200,9 @@ std::optional<FoundColumn> find_column(const std::string& file,
     // Such as "power [L/h]": the name of one quantity in the unit of another.
     if (parts.unit && is_unit(*parts.unit) && !factor_of(*parts.unit, channel.measure)) continue;
     if (found) {
-      refuse_columns(file, "holds both " + safe_text(found->name, 40) + " and " +
-                               safe_text(name, 40) + ", expected one of them" +
-                               (is_rate ? ": state the column of fuel or power" : ""));
+      refuse_log(file, "holds both " + safe_text(found->name, 40) + " and " + safe_text(name, 40) +
+                           ", expected one of them" +
+                           (is_rate ? ": state the column of fuel or power" : ""));
     }
     found = FoundColumn{name, factor_in(file, name, channel.measure, unit)};
   }

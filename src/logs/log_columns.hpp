@@ -13,6 +13,9 @@
 
 namespace excavplan {
 
+/// @throws Error (bad_file) of a log
+[[noreturn]] void refuse_log(const std::string& file, const std::string& why);
+
 /// What a column measures.
 enum class Measure { time, flow, power, torque, turn_rate, angle, pressure, speed };
 

@@ -31,10 +31,6 @@ const Channel power_channel = {
     Measure::power,
     {"power", "joint_power", "shaft_power", "engine_power", "hydraulic_power", "pump_power"}};
 
-[[noreturn]] void refuse_log(const std::string& file, const std::string& why) {
-  throw Error(ErrorKind::bad_file, file + ": " + why);
-}
-
 std::string at_line(const Table& table, std::size_t row) {
   return "line " + std::to_string(table.line(row)) + ": ";
 }

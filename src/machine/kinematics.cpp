@@ -18,7 +18,6 @@ using Eigen::Vector2d;
 
 constexpr double standard_gravity = 9.80665;  // [m/s^2], ISO 80000-3
 constexpr double rounding_of_reach = 1e-12;
-constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 /// The same direction within half a turn of `center`.
 double wrap_near(double angle, double center) {
@@ -64,8 +63,7 @@ std::variant<JointAngles, Unreachable> within_limits(const Machine& machine, Joi
     joints[i] = std::min(std::max(angle, limits.lower), limits.upper);
     const double excess = std::abs(angle - joints[i]);
     if (!(excess <= worst.excess)) {  // NaN is worse than all
-      worst = {Unreachable::Reason::joint_limit, all_joints[static_cast<std::size_t>(i)], angle,
-               joints[i], excess};
+      worst = {Unreachable::Reason::joint_limit, static_cast<Joint>(i), angle, joints[i], excess};
     }
   }
   if (!(worst.excess <= rounding_of_reach)) return worst;
@@ -117,12 +115,12 @@ std::variant<JointAngles, Unreachable> inverse_kinematics_fixed_bucket(const Mac
 
 LimitMargin limit_margin(const Machine& machine, const JointAngles& joints) {
   LimitMargin smallest{std::numeric_limits<double>::infinity(), Joint::boom};
-  for (std::size_t i = 0; i < all_joints.size(); ++i) {
+  for (std::size_t i = 0; i < machine.limits.size(); ++i) {
     const double angle = joints[static_cast<int>(i)];
     const double margin =
         std::min(angle - machine.limits[i].lower, machine.limits[i].upper - angle);
-    if (std::isnan(margin)) return {margin, all_joints[i]};
-    if (margin < smallest.margin) smallest = {margin, all_joints[i]};
+    if (std::isnan(margin)) return {margin, static_cast<Joint>(i)};
+    if (margin < smallest.margin) smallest = {margin, static_cast<Joint>(i)};
   }
   return smallest;
 }

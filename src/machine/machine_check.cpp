@@ -16,8 +16,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double longest = 100.0;  // as load_machine() [m]
-
 /// Texts are made only of what breaks a rule: the checks run before every path.
 class Rules {
  public:
@@ -58,23 +56,23 @@ void check_joint(const Rules& rules, Joint joint, const JointLimits& limits, con
   rules.positive(of, " limits.acceleration", limits.acceleration, 1e4);
   rules.positive(of, " limits.torque", limits.torque, infinity);
   rules.in(of, " link.mass", link.mass, 0.0, 1e6);
-  rules.in(of, " link.along", link.along, -longest, longest);
-  rules.in(of, " link.across", link.across, -longest, longest);
+  rules.in(of, " link.along", link.along, -longest_part, longest_part);
+  rules.in(of, " link.across", link.across, -longest_part, longest_part);
 }
 
 void check_bucket(const Rules& rules, const Machine& machine) {
   const Bucket& bucket = machine.bucket;
   for (const Eigen::Vector2d& corner : bucket.profile) {
-    rules.in("bucket.", "profile", corner.x(), -longest, longest);
-    rules.in("bucket.", "profile", corner.y(), -longest, longest);
+    rules.in("bucket.", "profile", corner.x(), -longest_part, longest_part);
+    rules.in("bucket.", "profile", corner.y(), -longest_part, longest_part);
   }
-  rules.positive("bucket.", "width_outside", bucket.width_outside, longest);
-  rules.positive("bucket.", "width_inside", bucket.width_inside, longest);
+  rules.positive("bucket.", "width_outside", bucket.width_outside, longest_part);
+  rules.positive("bucket.", "width_inside", bucket.width_inside, longest_part);
   rules.positive("bucket.", "edge_thickness", bucket.edge_thickness, 1.0);
   rules.positive("bucket.", "edge_angle", bucket.edge_angle, pi / 2.0);
   if (const auto& teeth = bucket.teeth) {
     rules.in("bucket.teeth.", "count", teeth->count, 1.0, 50.0);
-    rules.positive("bucket.teeth.", "width", teeth->width, longest);
+    rules.positive("bucket.teeth.", "width", teeth->width, longest_part);
     rules.positive("bucket.teeth.", "thickness", teeth->thickness, 1.0);
     rules.positive("bucket.teeth.", "length", teeth->length, 1.0);
     rules.positive("bucket.teeth.", "angle", teeth->angle, pi / 2.0);
@@ -101,9 +99,9 @@ void check_hydraulics(const Rules& rules, const Machine& machine) {
 void check_rest(const Rules& rules, const Machine& machine) {
   if (const auto& body = machine.body) {
     rules.positive("body.", "mass", body->mass, 1e6);
-    rules.positive("body.", "centre.z", body->centre.y(), longest);
-    rules.in("body.", "rear_edge", body->rear_edge, -longest, longest);
-    rules.in("body.", "front_edge", body->front_edge, -longest, longest);
+    rules.positive("body.", "centre.z", body->centre.y(), longest_part);
+    rules.in("body.", "rear_edge", body->rear_edge, -longest_part, longest_part);
+    rules.in("body.", "front_edge", body->front_edge, -longest_part, longest_part);
     rules.below("body.", "rear_edge", body->rear_edge, body->centre.x());
     rules.below("body.", "centre.x", body->centre.x(), body->front_edge);
     rules.positive("body.", "track_friction", body->track_friction, 2.0);
@@ -246,17 +244,17 @@ void check_units(const Machine& machine,
 
 void require_machine(const Machine& machine) {
   const Rules rules(machine);
-  rules.in("", "boom_pin.x", machine.boom_pin.x(), -longest, longest);
-  rules.in("", "boom_pin.z", machine.boom_pin.y(), -longest, longest);
-  rules.positive("", "boom_length", machine.boom_length, longest);
-  rules.positive("", "arm_length", machine.arm_length, longest);
-  rules.positive("", "bucket_length", machine.bucket_length, longest);
-  rules.in("", "track_front", machine.track_front, -longest, longest);
+  rules.in("", "boom_pin.x", machine.boom_pin.x(), -longest_part, longest_part);
+  rules.in("", "boom_pin.z", machine.boom_pin.y(), -longest_part, longest_part);
+  rules.positive("", "boom_length", machine.boom_length, longest_part);
+  rules.positive("", "arm_length", machine.arm_length, longest_part);
+  rules.positive("", "bucket_length", machine.bucket_length, longest_part);
+  rules.in("", "track_front", machine.track_front, -longest_part, longest_part);
   constexpr double steepest = 0.8;  // [rad]; ours: no machine stands on 45 degrees
   rules.in("", "attitude: roll [rad]", machine.attitude.roll, -steepest, steepest);
   rules.in("", "attitude: pitch [rad]", machine.attitude.pitch, -steepest, steepest);
-  if (machine.tail_radius) rules.positive("", "tail_radius", *machine.tail_radius, longest);
-  if (machine.track_width) rules.positive("", "track_width", *machine.track_width, longest);
+  if (machine.tail_radius) rules.positive("", "tail_radius", *machine.tail_radius, longest_part);
+  if (machine.track_width) rules.positive("", "track_width", *machine.track_width, longest_part);
   for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {
     const auto i = static_cast<std::size_t>(joint);
     check_joint(rules, joint, machine.limits[i], machine.links[i]);

@@ -12,6 +12,8 @@
 
 namespace excavplan {
 
+inline constexpr double longest_part = 100.0;  ///< a larger length is an error of units [m]
+
 /// Calls `fail`, which does not return, with the key in the `bucket` of a machine file and what is
 /// wrong.
 void check_shape(const Bucket& bucket, double bucket_length, double boom_length,

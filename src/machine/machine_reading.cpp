@@ -15,8 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double longest_part = 100.0;  // a larger length is an error of units [m]
-constexpr std::array<Joint, 3> read_joints = {Joint::boom, Joint::arm, Joint::bucket};
+constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 double positive(JsonObject& object, const std::string& key, double highest) {
   const double value = object.number(key);
@@ -176,8 +175,8 @@ Piston read_piston(JsonObject file) {
 Hydraulics read_hydraulics(JsonObject file) {
   Hydraulics hydraulics;
   hydraulics.pump_flow = positive(file, "pump_flow_m3_per_s", 1.0);
-  for (std::size_t i = 0; i < read_joints.size(); ++i) {
-    hydraulics.pistons[i] = read_piston(file.object(name(read_joints[i])));
+  for (std::size_t i = 0; i < all_joints.size(); ++i) {
+    hydraulics.pistons[i] = read_piston(file.object(name(all_joints[i])));
   }
   file.ignore("sources");
   file.done();
@@ -186,7 +185,7 @@ Hydraulics read_hydraulics(JsonObject file) {
 
 void read_cylinders(JsonObject file, Machine& machine) {
   const auto cylinder = [&](std::size_t i) {
-    const char* key = name(read_joints[i]);
+    const char* key = name(all_joints[i]);
     const JointLimits& limits = machine.limits[i];
     try {
       return Cylinder(read_cylinder(file.object(key)), limits.lower, limits.upper);
@@ -278,9 +277,9 @@ Machine read_machine(JsonObject file) {
   read_geometry(file.object("geometry"), machine);
   JsonObject joints = file.object("joints");
   JsonObject links = file.object("links");
-  for (std::size_t i = 0; i < read_joints.size(); ++i) {
-    const char* key = name(read_joints[i]);
-    machine.limits[i] = read_limits(joints.object(key), read_joints[i]);
+  for (std::size_t i = 0; i < all_joints.size(); ++i) {
+    const char* key = name(all_joints[i]);
+    machine.limits[i] = read_limits(joints.object(key), all_joints[i]);
     machine.links[i] = read_link(links.object(key));
   }
   machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length, machine.boom_length);
@@ -292,9 +291,9 @@ Machine read_machine(JsonObject file) {
   if (file.has("robot_joints")) {
     JsonObject robot = file.object("robot_joints");
     machine.robot_joints = read_robot_joints(robot);
-    for (std::size_t i = 0; i < read_joints.size(); ++i) {
+    for (std::size_t i = 0; i < all_joints.size(); ++i) {
       if (!machine.robot_joints[i].name.empty()) continue;
-      robot.fail(std::string(name(read_joints[i])) + ".name",
+      robot.fail(std::string(name(all_joints[i])) + ".name",
                  "is empty; boom, arm and bucket must have a name");
     }
   }

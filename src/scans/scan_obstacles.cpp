@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Ours:
-constexpr double around_return = 3.0;  // the map, where the shape of things is seen too [m]
+constexpr double around_map = 3.0;     // the map, where the shape of things is seen too [m]
 constexpr double hidden = 0.3;         // behind a face: as wide as the gaps that are filled [m]
 constexpr double one_level = 0.15;     // of returns that are one level of a face [m]
 constexpr double next_ray = 1.2;       // times the distance of two levels: to the next above
@@ -33,7 +33,7 @@ constexpr double widest_wire = 1.0;    // to which its direction is known [m]
 constexpr double above_wire = 1.0;     // [m]
 constexpr double thin_post = 0.1;      // of its returns in plan, from end to end [m]
 constexpr Index fewest_returns = 3;    // of what hangs, within 0.3 m: not outliers
-constexpr double seen_nothing = -std::numeric_limits<double>::infinity();
+constexpr double no_return = -std::numeric_limits<double>::infinity();
 
 /// Cells of a map, of which each holds some of the cells of a finer one, and 3 m around these.
 class ObstacleCells {
@@ -42,12 +42,12 @@ class ObstacleCells {
     const double wanted = std::min(std::max(spacing, grid.cell_size), largest_cell);
     parts_ = std::max<Index>(1, static_cast<Index>(std::ceil(wanted / grid.cell_size - 1e-9)));
     highest_.cell_size = static_cast<double>(parts_) * grid.cell_size;
-    rim_ = static_cast<Index>(std::ceil(around_return / highest_.cell_size));
+    rim_ = static_cast<Index>(std::ceil(around_map / highest_.cell_size));
     highest_.origin =
         grid.origin - Vector2d::Constant(static_cast<double>(rim_) * highest_.cell_size);
     const Index rows = (grid.z.rows() + parts_ - 1) / parts_ + 2 * rim_;
     const Index cols = (grid.z.cols() + parts_ - 1) / parts_ + 2 * rim_;
-    highest_.z = x_ = y_ = below_ = ArrayXXd::Constant(rows, cols, seen_nothing);
+    highest_.z = x_ = y_ = below_ = ArrayXXd::Constant(rows, cols, no_return);
   }
 
   Rectangle extent() const { return highest_.extent(); }
@@ -76,14 +76,14 @@ class ObstacleCells {
   /// The tops of obstacles on the cells of the map that these were made for.
   void put_obstacles(const HeightMap& grid, SeenTops& tops) const {
     const ArrayXXd& z = highest_.z;
-    const CellMask seen = found_ && z > seen_nothing;
+    const CellMask seen = found_ && z > no_return;
     const ArrayXXd next = highest_within(below_, 1);
     const ArrayXXd above = (next_ray * (top_ - next)).min(highest_step);
     const CellMask hangs = hanging(next);
     Layers all;
-    all.tops = widened(seen.select(z + above, seen_nothing));
-    all.returns = widened(seen.select(z, seen_nothing));
-    all.thin = widened((several(hangs) || posts(seen, next)).select(z, seen_nothing));
+    all.tops = widened(seen.select(z + above, no_return));
+    all.returns = widened(seen.select(z, no_return));
+    all.thin = widened((several(hangs) || posts(seen, next)).select(z, no_return));
     for (const Wire& wire : find_wires(returns_of(hangs))) enter(wire, all);
     tops.obstacles = on(grid, all.tops);
     tops.returns = on(grid, all.returns);
@@ -99,8 +99,8 @@ class ObstacleCells {
   /// The highest of each cell, or of those beside it; NaN where there is none.
   HeightMap shape() const {
     HeightMap shape = highest_;
-    shape.z = (highest_.z > seen_nothing).select(highest_.z, top_);
-    shape.z = (shape.z > seen_nothing).select(shape.z, std::nan("")).eval();
+    shape.z = (highest_.z > no_return).select(highest_.z, top_);
+    shape.z = (shape.z > no_return).select(shape.z, std::nan("")).eval();
     return shape;
   }
 
@@ -109,7 +109,7 @@ class ObstacleCells {
     for (Index col = 0; col < fine.cols(); ++col) {
       for (Index row = 0; row < fine.rows(); ++row) {
         const double value = values(rim_ + row / parts_, rim_ + col / parts_);
-        fine(row, col) = value > seen_nothing ? value : std::nan("");
+        fine(row, col) = value > no_return ? value : std::nan("");
       }
     }
     return fine;
@@ -146,7 +146,7 @@ class ObstacleCells {
 
   /// The lowest around, infinite where nothing is seen.
   ArrayXXd ground() const {
-    const ArrayXXd known = (highest_.z > seen_nothing).select(highest_.z, -seen_nothing);
+    const ArrayXXd known = (highest_.z > no_return).select(highest_.z, -no_return);
     return lowest_within(known, cells(1.0));
   }
 
@@ -181,7 +181,7 @@ class ObstacleCells {
     for (Index col = near; col + near < tops.cols(); ++col) {
       for (Index row = near; row + near < tops.rows(); ++row) {
         const double top = tops(row, col);
-        if (top == seen_nothing) continue;
+        if (top == no_return) continue;
         for (Index right = -near; right <= near; ++right) {
           for (Index down = -near; down <= near; ++down) {
             if (static_cast<double>(right * right + down * down) > most) continue;
@@ -207,7 +207,7 @@ class ObstacleCells {
         const Index r = cell.row + down, c = cell.col + right;
         if (r < 0 || c < 0 || r >= highest_.z.rows() || c >= highest_.z.cols()) continue;
         const double z = highest_.z(r, c);
-        if (z == seen_nothing || z > highest) continue;
+        if (z == no_return || z > highest) continue;
         const unsigned octant = (down > 0 ? 1U : 0U) + (right > 0 ? 2U : 0U) +
                                 (std::abs(down) > std::abs(right) ? 4U : 0U);
         seen |= 1U << octant;
@@ -246,7 +246,7 @@ class ObstacleCells {
 SeenTops seen_tops(const Scan& scan, const HeightMap& grid, const TopsOptions& options) {
   ObstacleCells cells(grid, options.spacing);
   SeenTops tops;
-  tops.highest = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), seen_nothing);
+  tops.highest = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), no_return);
   const Rectangle fine = grid.extent(), wide = cells.extent();
   const auto counts = [&](const Vector3d& p) {
     return p.allFinite() && p.z() <= options.ceiling && wide.contains(p.x(), p.y()) &&
@@ -263,7 +263,7 @@ SeenTops seen_tops(const Scan& scan, const HeightMap& grid, const TopsOptions& o
       z = std::max(z, p.z());
     }
   });
-  tops.highest = (tops.highest > seen_nothing).select(tops.highest, std::nan("")).eval();
+  tops.highest = (tops.highest > no_return).select(tops.highest, std::nan("")).eval();
   if (!cells.find()) {
     tops.obstacles = tops.returns = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), std::nan(""));
     tops.thin = CellMask::Constant(grid.z.rows(), grid.z.cols(), false);

@@ -21,10 +21,6 @@ using Eigen::Vector2d;
 // The surface's slope is taken over this ahead of the lip, or as far as the lip is deep [m].
 constexpr double slope_reach = 0.30;
 constexpr int heel_samples = 12;  // of the outline behind the lip
-constexpr double bearing_settlement =
-    0.1;  // of its width, at which a footing has its full capacity
-
-constexpr double cone_half_angle = 15.0 * pi / 180.0;  // of the standard cone (ASAE S313)
 
 /// Soil in the bucket is in its loosest state, with the cohesion that moist soil has there.
 SoilState dug_state(const SoilKind& soil) {

@@ -10,7 +10,13 @@
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
 
+#include "base/angles.hpp"
+
 namespace excavplan {
+
+inline constexpr double cone_half_angle = 15.0 * degree;  ///< of the standard cone (ASAE S313)
+/// Of its width, at which a footing has its full capacity; ours.
+inline constexpr double bearing_settlement = 0.1;
 
 /// One stretch of the path: the tip goes from `from` to `to` while the joints turn by `turn`.
 struct Stretch {

@@ -11,14 +11,12 @@
 #include "soil/earthmoving.hpp"
 
 #include "base/angles.hpp"
+#include "simulation/resistance.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double section_cone_half_angle = 15.0 * degree;  // of the standard cone (ASAE S313)
-constexpr double section_settlement = 0.1;  // of its width, at which a footing bears all; ours
 
 /// What a wedge of soil slides up on: the floor, or the front of the soil packed on it.
 struct SlidingFace {
@@ -359,7 +357,7 @@ class SoilResistance {
     };
     const double wedged =
         teeth.width * std::min(teeth.thickness, depth) * std::min(1.0, driven / teeth.length);
-    return teeth.count * wedged * flanks(0.5 * teeth.angle) / flanks(section_cone_half_angle);
+    return teeth.count * wedged * flanks(0.5 * teeth.angle) / flanks(cone_half_angle);
   }
 
   /// Floor and back behind the lip, where they are below what it has left.
@@ -402,7 +400,7 @@ class SoilResistance {
     if (!(std::max(from, to) > 1e-6 && end > begin)) return 0.0;
     const double steeper = (to - from) / (ground.to.x() - ground.from.x());
     const auto pressed = [&](double x) {
-      return (from + steeper * (x - ground.from.x())) / (section_settlement * floor_length_);
+      return (from + steeper * (x - ground.from.x())) / (bearing_settlement * floor_length_);
     };
     const double x = 0.5 * (begin + end);
     const Vector2d middle(x, side.from.y() + slope * (x - side.from.x()));

@@ -18,6 +18,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "base/random.hpp"
+#include "support/dig_survey.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 #include "support/survey_scenes.hpp"
@@ -27,6 +28,8 @@ namespace {
 
 using scenes::Part;
 using test::error_of;
+using test::has;
+using test::paper_law;
 
 std::shared_ptr<const Cloud> cloud_from(std::vector<Eigen::Vector3d> points) {
   auto cloud = std::make_shared<Cloud>();
@@ -51,13 +54,6 @@ DigScans whole_scene(double bulking = 1.2) {
 DigScans two_areas() {
   return {seen(Part::dig, false), seen(Part::dig, true),
           ScanPair{seen(Part::dump, false), seen(Part::dump, true)}};
-}
-
-DensityLaw paper_law() { return load_density_law(find_data_file("laws/paper.json")); }
-
-bool has(const std::vector<Warning>& warnings, const std::string& code) {
-  return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 void expect_same(const DensityEstimate& a, const DensityEstimate& b) {

@@ -11,6 +11,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/calibration/calibration.hpp>
 
+#include "support/errors.hpp"
 #include "support/soil_digs.hpp"
 
 /// @file
@@ -21,12 +22,8 @@ namespace excavplan {
 namespace {
 
 using test::Coverage;
+using test::has;
 using test::SoilDig;
-
-bool has_warning(const std::vector<Warning>& warnings, const std::string& code) {
-  return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return code_text(warning.code) == code; });
-}
 
 Reading reading_of(double bulking, double weight) {
   Reading reading;
@@ -130,7 +127,7 @@ TEST_F(SoilAnswers, ALawForTheFieldPathReadsWhatTheDefaultLawDoesNot) {
     if (density >= 40.0) {
       EXPECT_LT(fitted.density->sd_percent, 0.9 * unknown_path.density->sd_percent);
     }
-    EXPECT_FALSE(has_warning(fitted.warnings, "law_of_other_path"));
+    EXPECT_FALSE(has(fitted.warnings, "law_of_other_path"));
     EXPECT_EQ(fitted.law.path, (std::array<double, 3>{1.023, 0.496, 2.487}));
   }
 }
@@ -138,16 +135,13 @@ TEST_F(SoilAnswers, ALawForTheFieldPathReadsWhatTheDefaultLawDoesNot) {
 TEST_F(SoilAnswers, ALawOfAnotherPathSaysSo) {
   const SoilDig dig = exact(60.0, field_path_);
   DensityLaw law = law_of(calibrate_path(machine_, loam_.soil, paper_fixed_path()));
-  EXPECT_TRUE(has_warning(test::estimate_of(dig.change, law, {}).warnings, "law_of_other_path"));
+  EXPECT_TRUE(has(test::estimate_of(dig.change, law, {}).warnings, "law_of_other_path"));
   DensityOptions options;  // without a kind of soil nothing can be fitted
   options.dug_path = DugPath{machine_, field_path_, {}};
-  EXPECT_TRUE(
-      has_warning(test::estimate_of(dig.change, law, options).warnings, "law_of_other_path"));
+  EXPECT_TRUE(has(test::estimate_of(dig.change, law, options).warnings, "law_of_other_path"));
   options.dug_path->parameters = paper_fixed_path();
-  EXPECT_FALSE(
-      has_warning(test::estimate_of(dig.change, law, options).warnings, "law_of_other_path"));
-  EXPECT_FALSE(
-      has_warning(test::estimate_of(dig.change, loam_.law, {}).warnings, "law_of_other_path"));
+  EXPECT_FALSE(has(test::estimate_of(dig.change, law, options).warnings, "law_of_other_path"));
+  EXPECT_FALSE(has(test::estimate_of(dig.change, loam_.law, {}).warnings, "law_of_other_path"));
 }
 
 TEST_F(SoilAnswers, AnAssumedSoilIsSaidAndStaysTrusted) {
@@ -156,7 +150,7 @@ TEST_F(SoilAnswers, AnAssumedSoilIsSaidAndStaysTrusted) {
   options.soil.assumed = true;
   options.soil.possible = laws_;
   const DensityEstimate found = test::estimate_of(dig.change, loam_.law, options);
-  EXPECT_TRUE(has_warning(found.warnings, "soil_assumed"));
+  EXPECT_TRUE(has(found.warnings, "soil_assumed"));
   EXPECT_TRUE(found.trustworthy);
   ASSERT_EQ(found.soils.size(), laws_.size());
   EXPECT_EQ(found.soils[0].density.percent, found.density->percent);
@@ -205,7 +199,7 @@ TEST_F(SoilAnswers, APayloadNamesAWrongSoilAndEndsTrust) {
   DensityOptions options = in(*sand);
   options.payload_mass = {dig.payload_mass.value, 0.01 * dig.payload_mass.value};
   const DensityEstimate wrong = test::estimate_of(dig.change, sand->law, options);
-  EXPECT_TRUE(has_warning(wrong.warnings, "payload_disagrees"));
+  EXPECT_TRUE(has(wrong.warnings, "payload_disagrees"));
   EXPECT_FALSE(wrong.trustworthy);
   // Among all soils it finds the right one.
   options = in_any();
@@ -223,11 +217,11 @@ TEST_F(SoilAnswers, APayloadThatFitsNoSoilEndsTrust) {
   DensityOptions options = in_any();
   options.payload_mass = {dig.payload_mass.value, 0.01 * dig.payload_mass.value};
   const DensityEstimate right = test::estimate_of(dig.change, loam_.law, options);
-  EXPECT_FALSE(has_warning(right.warnings, "payload_disagrees"));
+  EXPECT_FALSE(has(right.warnings, "payload_disagrees"));
   EXPECT_TRUE(right.trustworthy);
   options.payload_mass = {1.56 * dig.payload_mass.value, 0.016 * dig.payload_mass.value};
   const DensityEstimate wrong = test::estimate_of(dig.change, loam_.law, options);
-  EXPECT_TRUE(has_warning(wrong.warnings, "payload_disagrees"));
+  EXPECT_TRUE(has(wrong.warnings, "payload_disagrees"));
   EXPECT_FALSE(wrong.trustworthy);
   for (const DensityEstimate* each : {&right, &wrong}) {
     ASSERT_TRUE(each->payload);
@@ -371,7 +365,7 @@ TEST_F(SoilAnswers, AFallbackThatCannotBeIsNotUsed) {
     std::optional<Fallback> fallback =
         Fallback{1.0, in_pit, {std::clamp(in_pit, 0.0, 1.0), 0.03}, 1.0};
     const LawsForDig laws = laws_for_dig(loam_.law, options, fallback);
-    EXPECT_EQ(fallback.has_value(), !has_warning(laws.warnings, "dug_path_doubtful")) << in_pit;
+    EXPECT_EQ(fallback.has_value(), !has(laws.warnings, "dug_path_doubtful")) << in_pit;
     return fallback.has_value();
   };
   EXPECT_TRUE(judged(0.25));

@@ -14,6 +14,7 @@
 
 #include "base/random.hpp"
 #include "base/text.hpp"
+#include "support/errors.hpp"
 #include "support/soil_digs.hpp"
 
 /// @file
@@ -22,6 +23,8 @@
 namespace excavplan {
 namespace {
 
+using test::has;
+
 /// On a line without curvature.
 RelativeDensity density_of(double percent, double independent_sd, double shared_sd) {
   RelativeDensity density;
@@ -29,11 +32,6 @@ RelativeDensity density_of(double percent, double independent_sd, double shared_
   density.sd_given_law_percent = independent_sd;
   set_error(density, std::hypot(independent_sd, shared_sd));
   return density;
-}
-
-bool warns_of(const std::vector<Warning>& warnings, const std::string& code) {
-  return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 TEST(SuccessiveDensity, TenDigsAverageTheirMeasurementsButNotTheSoil) {
@@ -175,14 +173,14 @@ TEST_F(Successive, AnUntrustedPriorIsLeftOutWithAWarning) {
   const auto estimate = test::estimate_of(change, law, options);
   EXPECT_FALSE(estimate.successive);
   EXPECT_TRUE(estimate.trustworthy);
-  EXPECT_TRUE(warns_of(estimate.warnings, "prior_not_trustworthy"));
+  EXPECT_TRUE(has(estimate.warnings, "prior_not_trustworthy"));
   EXPECT_EQ(estimate.density->percent, alone.density->percent);
   options.prior->trustworthy = true;
   const auto joined = test::estimate_of(change, law, options);
   EXPECT_GT(joined.density->percent, alone.density->percent);
   options.prior->raw_percent += 40.0;
   const auto apart = test::estimate_of(change, law, options);
-  EXPECT_TRUE(warns_of(apart.warnings, "prior_disagrees"));
+  EXPECT_TRUE(has(apart.warnings, "prior_disagrees"));
   EXPECT_FALSE(apart.trustworthy);
 }
 

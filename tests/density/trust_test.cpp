@@ -22,6 +22,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "support/cases.hpp"
+#include "support/dig_survey.hpp"
 #include "support/site_scenes.hpp"
 
 /// @file
@@ -31,10 +32,10 @@
 namespace excavplan {
 namespace {
 
+using test::paper_law;
+
 using scenes::Family;
 using scenes::SiteScene;
-
-DensityLaw law_of_paper() { return load_density_law(find_data_file("laws/paper.json")); }
 
 bool warns(const DensityEstimate& estimate, WarningCode code) {
   return std::any_of(estimate.warnings.begin(), estimate.warnings.end(),
@@ -68,7 +69,7 @@ void add(const SiteScene& scene, const DensityEstimate& estimate, Outcome& outco
 Outcome surveyed(const std::vector<std::string>& names, std::uint64_t seeds,
                  std::size_t points = 150000) {
   Outcome outcome;
-  const DensityLaw law = law_of_paper();
+  const DensityLaw law = paper_law();
   DensityOptions options;
   options.threads = 1;
   for (const std::string& name : names) {
@@ -108,8 +109,7 @@ TEST(Trust, IsKeptWithNoDataWhichIsNamed) {
                                    [](const Family& f) { return f.name == "no-data"; });
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const SiteScene scene = scenes::site_scene(*family, seed, 150000);
-    const DensityEstimate estimate =
-        estimate_density(scenes::scans_of(scene, seed), law_of_paper());
+    const DensityEstimate estimate = estimate_density(scenes::scans_of(scene, seed), paper_law());
     EXPECT_TRUE(estimate.trustworthy) << seed;
     ASSERT_TRUE(warns(estimate, WarningCode::outliers)) << seed;
     EXPECT_NE(estimate.warnings.front().message.find("stands for no data"), std::string::npos);
@@ -142,7 +142,7 @@ TEST(Trust, IsEndedByAWarningThatSaysWhy) {
     DigScans scans = scenes::scans_of(scene, i);
     if (i % 2 == 1 && i % 3 == 0) scans.after = scans.before;
     try {
-      estimates[i] = estimate_density(scans, law_of_paper(), options);
+      estimates[i] = estimate_density(scans, paper_law(), options);
     } catch (const Error&) {  // refused
     }
   });
@@ -166,7 +166,7 @@ TEST(StrewnSoil, IsStatedWithAndWithoutAThreshold) {
   const auto family = std::find_if(scenes::families().begin(), scenes::families().end(),
                                    [](const Family& f) { return f.name == "strewn-none"; });
   const SiteScene scene = scenes::site_scene(*family, 3, 150000);
-  const VolumeChange change = estimate_density(scenes::scans_of(scene, 3), law_of_paper()).change;
+  const VolumeChange change = estimate_density(scenes::scans_of(scene, 3), paper_law()).change;
   EXPECT_GT(change.outside.sd, 0.0);
   EXPECT_LT(std::abs(change.outside.value), 4.0 * change.outside.sd) << "nothing was strewn";
   EXPECT_GE(change.strewn.value, 0.0);
@@ -228,7 +228,7 @@ TEST(ReportedScans, HoldTheTruthAndAreTrusted) {
   }
   for (const auto& [folder, ending] : std::vector<std::pair<std::string, std::string>>{
            {"crumbs", ".pcd"}, {"thin-spill", ".pcd"}, {"no-data", ".xyz"}}) {
-    const DensityEstimate estimate = estimate_density(reported(folder, ending), law_of_paper());
+    const DensityEstimate estimate = estimate_density(reported(folder, ending), paper_law());
     EXPECT_TRUE(estimate.trustworthy) << folder;
     const auto interval = bulking_interval(estimate.change);
     ASSERT_TRUE(interval) << folder;
@@ -264,7 +264,7 @@ TEST(RealPair, IsAnsweredWithoutAnArea) {
   if (!std::filesystem::exists(std::string(shared_data) + "/dig-pair-livox")) {
     GTEST_SKIP() << "no real scans in " << shared_data;
   }
-  const VolumeChange change = estimate_density(bite({}, false), law_of_paper()).change;
+  const VolumeChange change = estimate_density(bite({}, false), paper_law()).change;
   EXPECT_TRUE(holds(change.excavated, 2.80, 2.96)) << change.excavated.value;
   EXPECT_TRUE(holds(change.spilled, 0.36, 0.38)) << change.spilled.value;
   EXPECT_LT(change.excavated.sd, 0.4);
@@ -281,8 +281,8 @@ TEST(RealPair, HalvesAgreeWithoutAnArea) {
     return std::abs(a.value - b.value) < 1.96 * std::hypot(a.sd, b.sd);
   };
   for (std::uint64_t split = 1; split <= 20; ++split) {
-    const VolumeChange one = estimate_density(bite(split, false), law_of_paper()).change;
-    const VolumeChange two = estimate_density(bite(split, true), law_of_paper()).change;
+    const VolumeChange one = estimate_density(bite(split, false), paper_law()).change;
+    const VolumeChange two = estimate_density(bite(split, true), paper_law()).change;
     holes += agree(one.excavated, two.excavated) ? 1 : 0;
     spills += agree(one.spilled, two.spilled) ? 1 : 0;
   }

@@ -85,13 +85,6 @@ Way straight(const FrontJoints& from, const FrontJoints& to) {
            {DigPhase::approach, to, JointAngles::Zero()}}};
 }
 
-DigPath fixed_path() {
-  const auto flat = [](double) { return 0.0; };
-  DigPath path = std::get<DigPath>(make_dig_path(zx120(), paper_fixed_path(), 6.0, flat));
-  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat));
-  return path;
-}
-
 // One joint alone is a trapezoid, two steps of smoothing longer, and up to one to the next point.
 TEST(Motion, OfOneJointIsTheTextbookTrapezoid) {
   MotionOptions options;

@@ -16,6 +16,7 @@
 #include "base/random.hpp"
 #include "planning/surroundings.hpp"
 #include "support/machine_file.hpp"
+#include "support/motion_cases.hpp"
 
 /// @file
 /// What the way of a cycle passes over. Its clearance is found here from the points of the timed
@@ -91,13 +92,6 @@ double clearance(const Machine& machine, const Trajectory& motion, const Ground&
   return least;
 }
 
-DigPath path_fixed() {
-  const auto flat = [](double) { return 0.0; };
-  DigPath path = std::get<DigPath>(make_dig_path(zx120(), paper_fixed_path(), 6.0, flat));
-  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat));
-  return path;
-}
-
 CycleWayOptions whole_cycle(double dump_height = 3.0) {
   CycleWayOptions options;
   options.whole_cycle = true;
@@ -106,7 +100,7 @@ CycleWayOptions whole_cycle(double dump_height = 3.0) {
 }
 
 std::variant<Way, BlockedWay> cycle_over(const Terrain& ground, double dump_height = 3.0) {
-  return way_of_cycle(zx120(), ground, path_fixed(), {{}, 500.0}, whole_cycle(dump_height));
+  return way_of_cycle(zx120(), ground, fixed_path(), {{}, 500.0}, whole_cycle(dump_height));
 }
 
 bool has(const Way& way, const std::string& code) {
@@ -183,7 +177,7 @@ TEST(Surroundings, TheWayMayBeginInATrench) {
   options.start.emplace();
   *options.start << joints, swing;
   const auto begun = [&](const Ground& ground) {
-    return way_of_cycle(zx120(), terrain_of(ground), path_fixed(), {{}, 500.0}, options);
+    return way_of_cycle(zx120(), terrain_of(ground), fixed_path(), {{}, 500.0}, options);
   };
   for (const double half : {0.37, 0.5}) {
     const auto laid = begun(trench(half));
@@ -211,7 +205,7 @@ TEST(Surroundings, APostAboveTheBucketBlocksTheWayOffTheGround) {
   const auto laid = way_of_cycle(
       zx120(),
       terrain_of(box_on_ground(place.x(), place.y(), place.x() + 0.05, place.y() + 0.05, 9.0)),
-      path_fixed(), {{}, 500.0}, options);
+      fixed_path(), {{}, 500.0}, options);
   EXPECT_GT(under_arm, 1.0);
   EXPECT_TRUE(std::holds_alternative<BlockedWay>(laid));
 }
@@ -322,7 +316,7 @@ TEST(Surroundings, WhatStandsHigherThanTheDumpHeightAtTheDumpPlaceIsTold) {
 
 TEST(Surroundings, ABucketThatCannotKeepItsAttitudeIsToldOf) {
   Machine stiff = zx120();
-  const DigPath path = path_fixed();
+  const DigPath path = fixed_path();
   stiff.limits[2].upper = path.poses.back().joints[2] + 0.05;
   const auto laid =
       way_of_cycle(stiff, level_swing_ground(stiff), path, {{}, 500.0}, whole_cycle());
@@ -340,7 +334,7 @@ TEST(Surroundings, TheUndercarriageDoesNotTurnWithTheSwing) {
   CycleWayOptions options;
   const auto from = [&](const FrontJoints& start) {
     options.start = start;
-    return way_of_cycle(zx120(), level_swing_ground(zx120()), path_fixed(), {{}, 0.0}, options);
+    return way_of_cycle(zx120(), level_swing_ground(zx120()), fixed_path(), {{}, 0.0}, options);
   };
   const Ground core = box_on_ground(-1.65, -1.0, 1.65, 1.0, 0.9);
   FrontJoints folded;
@@ -430,7 +424,7 @@ TEST(Surroundings, TheSwingBeginsOverTheGroundThatTheDigLeaves) {
   DigLoad load = {{}, 500.0};
   const auto swung = [&] {
     const auto laid =
-        way_of_cycle(zx120(), level_swing_ground(zx120()), path_fixed(), load, whole_cycle(2.0));
+        way_of_cycle(zx120(), level_swing_ground(zx120()), fixed_path(), load, whole_cycle(2.0));
     return clearance(zx120(), time_way(zx120(), std::get<Way>(laid)), heap, DigPhase::swing,
                      DigPhase::back);
   };

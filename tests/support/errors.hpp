@@ -2,13 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 namespace excavplan::test {
+
+inline bool has(const std::vector<Warning>& warnings, const std::string& code) {
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const Warning& warning) { return code_text(warning.code) == code; });
+}
 
 /// The text of the Error of this kind that a call throws; "no error" if it throws none.
 template <typename Call>

@@ -9,10 +9,19 @@
 #include <variant>
 #include <vector>
 
+#include "support/machine_file.hpp"
+
 namespace excavplan::test {
 
 Machine shipped_machine(const std::string& name) {
   return load_machine(find_data_file("machines/" + name + ".json"));
+}
+
+DigPath fixed_path() {
+  const auto flat = [](double) { return 0.0; };
+  DigPath path = std::get<DigPath>(make_dig_path(zx120(), paper_fixed_path(), 6.0, flat));
+  path.approach = std::get<std::vector<DigPose>>(way_down(zx120(), path, flat));
+  return path;
 }
 
 Machine any_machine(Random& random) {

@@ -19,6 +19,9 @@ namespace excavplan::test {
 
 Machine shipped_machine(const std::string& name);
 
+/// The paper's path of the shipped machine on level ground, with its way down.
+DigPath fixed_path();
+
 /// A shipped machine with other limits.
 Machine any_machine(Random& random);
 
