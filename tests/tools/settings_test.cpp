@@ -90,6 +90,7 @@ TEST_F(SettingsText, WhatIsWrongIsNamedWithItsPlace) {
             "or numbers");
   EXPECT_EQ(refusal("soil = \"a\\u0007\"").rfind("site.toml: line 1, column 8: a text is", 0), 0U);
   EXPECT_EQ(refusal("soil = 'x").rfind("site.toml: line 1, column 10: Error while parsing", 0), 0U);
+  EXPECT_EQ(refusal("[\007plan-path]").rfind("site.toml: line 1, column 2: Error while", 0), 0U);
   EXPECT_EQ(refusal("soil = '\xff'"), "site.toml: byte 8 is no UTF-8 text");
   EXPECT_EQ(refusal("a" + std::string(2000, '.')),
             "site.toml: line 1: 2001 bytes, at most 1000 are allowed");
