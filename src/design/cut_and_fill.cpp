@@ -20,6 +20,7 @@
 #include "ground/hole_filling.hpp"
 #include "ground/map_check.hpp"
 #include "ground/noise_model.hpp"
+#include "ground/window.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,7 +31,7 @@ using Eigen::ArrayXXd;
 constexpr int sign_reach = 2;          // cells to every side, of whose mean the sign counts
 constexpr double of_highest = 0.25;    // of the largest difference, the deviation of unknown ground
 constexpr double most_overlap = 1e-3;  // of a design's area
-constexpr double whole_cell = 1.0 - 1e-9;
+constexpr double upright_area = 1e-9;  // of a face in a cell is that of rounding [m^2]
 
 /// What of the design lies in each cell, and how the ground lies to it.
 struct CellSums {
@@ -39,13 +40,15 @@ struct CellSums {
         above(area),
         below(area),
         height(area),
-        steep(Mask::Constant(area.rows(), area.cols(), false)) {}
+        steep(area),
+        upright(Mask::Constant(area.rows(), area.cols(), false)) {}
 
   ArrayXXd area;             // [m^2]
   ArrayXXd above;            // of ground over the design [m^3]
   ArrayXXd below;            // missing below it [m^3]
   ArrayXXd height;           // integral of the design's [m^3]
-  Mask steep;                // has a part of a steep face
+  ArrayXXd steep;            // part of the area that is steep faces [m^2]
+  Mask upright;              // has a part of one without area
   double whole_area = 0.0;   // of the design
   double placed_area = 0.0;  // of it, on the grid
 };
@@ -76,7 +79,7 @@ class Comparison {
     const PieceSum sum = sum_of(part);
     sums_.placed_area += sum.area;
     if (std::isnan(ground)) return;
-    if (is_steep) sums_.steep(at.row, at.col) = true;
+    const double before = sums_.area(at.row, at.col);
     const double lowest = part.lowest(2), highest = part.highest(2);
     if (highest <= ground) {
       add_cut(at, sum, ground);
@@ -88,6 +91,9 @@ class Comparison {
       if (!under.is_empty()) add_cut(at, sum_of(under), ground);
       if (!over.is_empty()) add_fill(at, sum_of(over), ground);
     }
+    if (!is_steep) return;
+    sums_.steep(at.row, at.col) += sums_.area(at.row, at.col) - before;
+    if (sum.area < upright_area) sums_.upright(at.row, at.col) = true;
   }
   void add_cut(Cell at, const PieceSum& sum, double ground) {
     sums_.area(at.row, at.col) += sum.area;
@@ -208,22 +214,10 @@ void add_volumes(const CellSums& sums, const Surface& ground, const Mask& unseen
   result.fill.sd = fill_error.sd(highest);
 }
 
-/// Cells that count: whole, not steep, and no such cell nearer than the margin.
+/// Cells that count: far enough from the rim and from steep faces.
 Mask counting_cells(const CellSums& sums, const HeightMap& grid, double margin) {
-  const ArrayXXd share = sums.area / (grid.cell_size * grid.cell_size);
-  const Mask whole = share >= whole_cell && !sums.steep;
-  const auto reach = static_cast<Eigen::Index>(std::ceil(margin / grid.cell_size - 1e-9));
-  Mask counts = whole;
-  for_each_cell(whole, [&](Cell at) {
-    if (!whole(at.row, at.col)) return;
-    const bool is_inside = at.row >= reach && at.col >= reach && at.row + reach < whole.rows() &&
-                           at.col + reach < whole.cols();
-    counts(at.row, at.col) = is_inside;
-    if (!is_inside) return;
-    counts(at.row, at.col) =
-        whole.block(at.row - reach, at.col - reach, 2 * reach + 1, 2 * reach + 1).all();
-  });
-  return counts;
+  const ArrayXXd share = (sums.area - sums.steep) / (grid.cell_size * grid.cell_size);
+  return inner_cells(sums.upright.select(share.min(0.5), share), grid.cell_size, margin);
 }
 
 Deviation deviation_of(const CellSums& sums, const HeightMap& ground, const CutOptions& options) {

@@ -3,6 +3,7 @@
 #include "ground/window.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excavplan {
 
@@ -60,6 +61,34 @@ Eigen::ArrayXXd highest_within(const Eigen::ArrayXXd& z, Index cells) {
   take_highest_above(highest, cells);
   take_highest_beside(highest, cells);
   return highest;
+}
+
+Mask inner_cells(const Eigen::ArrayXXd& share, double cell_size, double margin) {
+  constexpr double whole_share = 1.0 - 1e-6;
+  constexpr double rounding = 1e-9;
+  const Mask whole = share >= whole_share;
+  const double apart = margin / cell_size - rounding;
+  const auto reach = static_cast<Index>(std::ceil(apart + 0.5));
+  Mask inner = whole;
+  const auto leave_out_around = [&](Cell outer, double inside) {
+    bool is_at_edge = false;
+    for_each_around(whole, outer, 1, [&](Cell at) { is_at_edge |= whole(at.row, at.col); });
+    if (!is_at_edge) return;
+    for_each_around(inner, outer, reach, [&](Cell at) {
+      const auto rows = static_cast<double>(at.row - outer.row);
+      const auto cols = static_cast<double>(at.col - outer.col);
+      if (std::hypot(rows, cols) - 0.5 + inside < apart) inner(at.row, at.col) = false;
+    });
+  };
+  for (Index col = -1; col <= share.cols(); ++col) {
+    for (Index row = -1; row <= share.rows(); ++row) {
+      const bool is_on_grid = row >= 0 && col >= 0 && row < share.rows() && col < share.cols();
+      if (!is_on_grid) leave_out_around({row, col}, 0.0);
+      if (is_on_grid && !whole(row, col))
+        leave_out_around({row, col}, std::max(0.0, share(row, col)));
+    }
+  }
+  return inner;
 }
 
 AreaSums::AreaSums(const Eigen::ArrayXXd& field)

@@ -40,18 +40,17 @@ void for_each_inside(const SitePolygon& polygon, const HeightMap& grid, Visit vi
   });
 }
 
-/// The design less its rim and its steep faces.
-Mask counting(const HeightMap& target, double edge_margin) {
+/// The design less its rim and its steep faces. @param share  of each cell that is in the design
+Mask counting(const HeightMap& target, const ArrayXXd& share, double edge_margin) {
   const double cell = target.cell_size;
-  ArrayXXd left_out = target.z.isNaN().cast<double>();
+  ArrayXXd gentle = target.z.isNaN().select(0.0, share);
   for_each_cell(target.z, [&](Cell at) {
     for_each_neighbour(target.z, at, [&](Cell next) {
       const double rise = std::abs(target.z(at.row, at.col) - target.z(next.row, next.col));
-      if (rise > std::tan(steepest) * cell) left_out(at.row, at.col) = 1.0;
+      if (rise > std::tan(steepest) * cell) gentle(at.row, at.col) = 0.0;
     });
   });
-  const auto margin = static_cast<Eigen::Index>(std::ceil(edge_margin / cell - 1e-9));
-  return highest_within(left_out, margin) < 0.5;
+  return inner_cells(gentle, cell, edge_margin);
 }
 
 /// Whether a cell that counts is of a face which a dig along the heading does not make by itself;
@@ -164,7 +163,7 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   const DesignCover cover = cover_of(settings.surface, ground);
   map.target.z =
       below_ground((cover.share >= share_of_design).select(cover.height, std::nan("")), ground);
-  map.counts = counting(map.target, design.edge_margin);
+  map.counts = counting(map.target, cover.share, design.edge_margin);
   map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
   for (const DumpArea& area : design.dump_areas) {
     for_each_inside(area.polygon, ground, [&](Cell at) { map.dump(at.row, at.col) = true; });

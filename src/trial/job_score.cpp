@@ -3,12 +3,13 @@
 #include <excavplan/trial/job_score.hpp>
 
 #include <cmath>
-#include <limits>
-
-#include <excavplan/design/cut_and_fill.hpp>
+#include <vector>
 
 #include "base/check.hpp"
+#include "base/non_finite.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/window.hpp"
 #include "trial/plan_polygon.hpp"
 #include "trial/scored_design.hpp"
 
@@ -28,15 +29,23 @@ double volume(const ArrayXXd& height, const ArrayXXd& weight, double cell) {
   return cell * cell * (height > 0.0).select(weight * height, 0.0).sum();
 }
 
-Deviation deviation(const HiddenSite& site, const HeightMap& gentle, const HeightMap& after) {
-  DesignSurface zone;
-  zone.name = site.known.design.name;
-  zone.shape = gentle;
-  CutOptions options;
-  options.tolerance = site.known.job.tolerance;
-  options.edge_margin = site.known.job.edge_margin;
-  options.least_known_share = 0.0;
-  return cut_and_fill(zone, after, options).deviation;
+/// How far the ground is from the design in its zone.
+void add_errors(const JobDesign& job, const ScoredDesign& design, const HeightMap& after,
+                JobScore& score) {
+  std::vector<double> off;
+  double squares = 0.0, beyond = 0.0;
+  const Mask zone = inner_cells(design.gentle, after.cell_size, job.edge_margin);
+  for_each_cell(zone, [&](Cell at) {
+    const double e = std::abs(after.z(at.row, at.col) - design.height.z(at.row, at.col));
+    if (!zone(at.row, at.col) || std::isnan(e)) return;
+    off.push_back(e);
+    squares += e * e;
+    if (e > 2.0 * job.tolerance) beyond += 1.0;
+  });
+  const auto n = static_cast<double>(off.size());  // of none all are NaN
+  score.rms = std::sqrt(squares / n);
+  score.p95 = off.empty() ? nan : quantile(off, 0.95);
+  score.beyond_twice = beyond / n;
 }
 
 /// Volume that changed in a keep-out, of one with a depth what changed below it.
@@ -90,10 +99,7 @@ JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen) 
   }
 
   JobScore score;
-  const Deviation off = deviation(site, design.gentle, after);
-  score.rms = off.rms;
-  score.p95 = off.p95;
-  score.beyond_twice = off.beyond_twice;
+  add_errors(site.known.job, design, after, score);
   score.seen = seen;
   score.design_cut = design.below(before.z);
   score.left = design.below(after.z);

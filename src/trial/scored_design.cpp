@@ -13,12 +13,6 @@
 namespace excavplan {
 using Eigen::ArrayXXd;
 
-namespace {
-
-constexpr double whole = 1.0 - 1e-6;  // share of a cell
-
-}  // namespace
-
 double ScoredDesign::below(const ArrayXXd& surface) const {
   const ArrayXXd over = share * (surface - height.z);
   return height.cell_size * height.cell_size * (over > 0.0).select(over, 0.0).sum();
@@ -31,23 +25,20 @@ ScoredDesign scored_design(const SiteBrief& site, const HeightMap& before) {
   const Mask inside = cover.share > 0.0 && cover.height < before.z;
   scored.height.z = inside.select(cover.height, nan);
   scored.share = inside.select(cover.share.min(1.0), 0.0);
-  scored.gentle = scored.height;
-  scored.gentle.z = (scored.share >= whole).select(cover.height, nan);
+  const ArrayXXd& z = scored.height.z;
   const auto step_to = [&](Cell from, Eigen::Index rows, Eigen::Index cols) {
     const Cell to = {from.row + rows, from.col + cols};
-    const ArrayXXd& z = scored.gentle.z;
     if (to.row < 0 || to.col < 0 || to.row >= z.rows() || to.col >= z.cols()) return 0.0;
     const double step = std::abs(z(to.row, to.col) - z(from.row, from.col));
     return std::isnan(step) ? 0.0 : step;
   };
   const double highest_step = before.cell_size * std::tan(CutOptions{}.steepest);
-  ArrayXXd gentle = scored.gentle.z;
-  for_each_cell(gentle, [&](Cell at) {
+  scored.gentle = scored.share;
+  for_each_cell(z, [&](Cell at) {
     const double step = std::hypot(std::max(step_to(at, 0, 1), step_to(at, 0, -1)),
                                    std::max(step_to(at, 1, 0), step_to(at, -1, 0)));
-    if (step > highest_step) gentle(at.row, at.col) = nan;
+    if (step > highest_step) scored.gentle(at.row, at.col) = 0.0;
   });
-  scored.gentle.z = gentle;
   return scored;
 }
 

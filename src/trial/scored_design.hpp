@@ -8,10 +8,9 @@ namespace excavplan {
 
 /// The design on the cells of the true ground.
 struct ScoredDesign {
-  HeightMap height;       ///< of the design inside its footprint, NaN outside of it
-  Eigen::ArrayXXd share;  ///< of each cell in the footprint [-]
-  /// The height of cells that are whole and no face steeper than CutOptions::steepest; else NaN.
-  HeightMap gentle;
+  HeightMap height;        ///< of the design inside its footprint, NaN outside of it
+  Eigen::ArrayXXd share;   ///< of each cell in the footprint [-]
+  Eigen::ArrayXXd gentle;  ///< likewise, 0 on faces steeper than CutOptions::steepest
 
   /// Volume from the design up to a surface, where that is higher [m^3].
   double below(const Eigen::ArrayXXd& surface) const;

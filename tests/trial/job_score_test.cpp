@@ -60,12 +60,14 @@ TEST(JobScore, TheRimDoesNotCount) {
   EXPECT_TRUE(score_job(site, trench.ground, 1.0).finished);
 }
 
-TEST(JobScore, TheRimLiesInsideTheLastCellsThatAreWholeInTheDesign) {
+TEST(JobScore, TheRimIsAsWideAsToldWhereverCellsLie) {
   PlainSiteFolder folder;
   folder.site["design"]["floor_width_m"] = 1.05;  // half a cell of 5 cm more on each side
   const HiddenSite site = folder.read();
   Trench trench(site);
   trench.set({2.0, -0.4, 6.0, 0.4}, -0.4);
+  EXPECT_FALSE(score_job(site, trench.ground, 1.0).finished);
+  trench.set({2.0, -0.45, 6.0, 0.45}, -0.4);
   EXPECT_TRUE(score_job(site, trench.ground, 1.0).finished);
 }
 
