@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <excavplan/planning/dig_cycle.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "base/angles.hpp"
@@ -54,6 +55,8 @@ constexpr int most_fruitless_wide = 12;      // likewise where many places are l
 constexpr int rounds_of_ends = 2;            // of a wide design, after each was dug from once
 constexpr double far_end = 0.8;              // that may slope until it is dug from beyond [m]
 constexpr double as_good_as_there = 0.3;     // of the machine: to move there changes nothing [m]
+constexpr int hard_from_stalls = 2;          // in a job: its soil is harder than its machine likes
+constexpr double move_in_hard = 2.0;         // at most along a row there, of the zx120 [m]
 constexpr int most_moves_to_dump = 3;        // from one station, in succession without a dig
 constexpr double bench_height = 0.4;         // of the layers of a wide design [m]
 constexpr double thin_bench = 0.15;          // likewise where its sides are faces along the lanes
@@ -103,6 +106,12 @@ std::vector<JobStation> once_more(const std::vector<JobStation>& stations) {
   // Those beside a design in their order, in which its floor comes after its ends.
   if (!again.empty() && again.front().is_across) std::reverse(again.begin(), again.end());
   return again;
+}
+
+/// Whether the next ones of its row lie behind it on the same line.
+bool is_alone_in_row(const JobStation& station) {
+  return !station.is_lookout() && !station.is_wide && !station.has_others_beside &&
+         !station.is_beyond && !station.is_across && !station.is_again;
 }
 
 /// What a dig is for.
@@ -247,6 +256,9 @@ struct SiteJob::State {
   std::optional<JobStation> place_to_dump_from();
   std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
+  double way_in_hard() const;
+  JobStation not_too_far(JobStation station) const;
+  std::optional<JobStation> rest_of_way() const;
   LookTask look_task(const JobProgress& now) const;
   bool has_shape(const JobProgress& now, double share = 1.0) const {
     return now.p95 <= share * settings.design.tolerance &&
@@ -730,7 +742,35 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
   const Standing on = {settings, map, first, ground.expected()};
   if (station.is_wide) return nearest_place(on, frame_at(station), station);
   if (station.is_again && !can_stand_now(on, frame_at(station), station)) return std::nullopt;
+  return not_too_far(station);
+}
+
+/// How far the machine still has to go along its row to the present place [m]; 0 if it does not
+/// come from the one before, or if its soil has not proved hard.
+double SiteJob::State::way_in_hard() const {
+  if (record.station == 0 || record.progress.stalls < hard_from_stalls) return 0.0;
+  const JobStation &from = stations[record.station - 1], &to = stations[record.station];
+  if (!is_alone_in_row(from) || !is_alone_in_row(to)) return 0.0;
+  const Eigen::Vector2d at = frame_at(to).of({record.base.x, record.base.y});
+  const bool is_between = at.x() < from.along + as_good_as_there &&
+                          at.x() > to.along + as_good_as_there &&
+                          std::abs(at.y() - to.beside) < as_good_as_there;
+  return is_between ? at.x() - to.along : 0.0;
+}
+
+/// The place of a row, or one before it in soil that has proved hard: far digs stall there, and
+/// what they leave is beyond reach from the next place.
+JobStation SiteJob::State::not_too_far(JobStation station) const {
+  const double way = way_in_hard();
+  const double most = move_in_hard * dig_size(settings.site.machine);
+  if (way > most + as_good_as_there) station.along += way * (1.0 - 1.0 / std::ceil(way / most));
   return station;
+}
+
+/// The present place of a row, if the machine went but a part of the way there.
+std::optional<JobStation> SiteJob::State::rest_of_way() const {
+  if (!(way_in_hard() > 0.0) || record.off_place > as_good_as_there) return std::nullopt;
+  return not_too_far(stations[record.station]);
 }
 
 /// Another place for the present station, if its soil has no place any more.
@@ -784,6 +824,7 @@ JobStep SiteJob::State::leave() {
     record.is_sent_again = true;
     return go_to(*place);
   }
+  if (const auto place = rest_of_way()) return go_to(*place);
   const bool looked_in_vain = stations[record.station].is_lookout() &&
                               now.seen - record.seen_before_look < least_newly_seen;
   record.seen_before_look = now.seen;

@@ -14,6 +14,7 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"
+#include "base/non_finite.hpp"
 #include "base/parallel.hpp"
 #include "planning/simulated_dig.hpp"
 #include "simulation/across_tracks.hpp"
@@ -43,7 +44,8 @@ const std::array<double, 6> cut_depths = {0.06, 0.1,  0.15,
 constexpr double lowest = -100.0;                             // of a drag along the floor [m]
 constexpr double heel_clearance = 0.12;                       // over the line of penetration [rad]
 constexpr double height_doubt = 0.01;  // of the edge over the ground, at which no dig may stall [m]
-constexpr double risky = 0.4;          // what a dig is worth that may stall, over one that will not
+constexpr double risky = 0.2;          // what a dig is worth that may stall, over one that will not
+constexpr double behind_sure = 1e-6;   // likewise, to be looked at after all of those
 constexpr double least_pass = 0.55;    // of a finishing pass, over the length of the work
 constexpr double shortest_pass = 0.6;  // [m]
 constexpr double above_ground = 0.015;  // where a pass begins: an edge in it would not move [m]
@@ -94,7 +96,11 @@ constexpr double most_strength = 20.0;   // likewise
 constexpr int strength_halvings = 6;     // of these bounds, by their logarithm
 constexpr double poor_fill = 0.5;        // of a dig, so that a bite may do better
 constexpr double thinnest_layer = 0.04;  // of a drag in hard soil [m]
-constexpr double least_slope = 0.1;      // of ground, to be dug along it [rad]
+const std::array<double, 4> shavings = {thinnest_layer, 0.07, 0.11, 0.16};  // off a bank [m]
+constexpr double over_open = 0.05;   // of one over the ground before the bank, at least [m]
+constexpr double bank_from = 0.2;    // before the start of one, the bank whose level counts [m]
+constexpr double bank_to = 0.6;      // likewise [m]
+constexpr double least_slope = 0.1;  // of ground, to be dug along it [rad]
 const std::array<double, 5> slope_cuts = {0.05, 0.08, 0.12, 0.18, 0.26};  // below it [m]
 const std::array<double, 2> steeper_than_slope = {0.15, 0.3};  // of a dig than the ground [rad]
 constexpr Attitude steep_attitude = {1.1, false};              // along the walls of a pit
@@ -291,7 +297,7 @@ class StepSearch {
   }
 
   std::optional<StepDig> best(Aim aim) {
-    rank();
+    rank(aim);
     std::optional<StepDig> best;
     std::size_t lane = 0;  // of the best
     std::size_t confirmed = 0;
@@ -399,6 +405,29 @@ class StepSearch {
       }
       rules.drag_keeps_angle = false;
       lay_out_along_slope(lane, start);
+    }
+    for (double start = line.far; start > line.near + start_step; start -= start_step)
+      lay_out_shavings(lane, start);
+  }
+
+  /// Level layers off the top of a bank, from the open ground beyond it: the edge need not
+  /// penetrate.
+  void lay_out_shavings(std::size_t lane, double start) {
+    const Lane& at = lanes_[lane];
+    if (!is_worth_a_dig(at, start)) return;
+    const double top = at.mean_over(start - bank_to, start - bank_from,
+                                    [&](Index col) { return at.view.ground_at(col); });
+    DigPathOptions rules = rules_in(lane);
+    rules.drag_keeps_angle = true;
+    for (const double cut : shavings) {
+      const double height = top - cut;
+      if (!(height > at.ground(start) + over_open)) return;
+      for (const Attitude& attitude : attitudes) {
+        if (!attitude.is_kept) continue;
+        add_drags(
+            lane, {attitude.angle, 0.0, 0.0}, {start, start, height},
+            [&](double) { return height; }, rules);
+      }
     }
   }
 
@@ -626,6 +655,7 @@ class StepSearch {
   struct Begin {
     double start;
     double drag;
+    double height = -infinity;  ///< over the ground, if that is lower there
   };
 
   /// With drags that fill the bucket, by the soil above a height of each x, or as long as can be.
@@ -638,7 +668,7 @@ class StepSearch {
     for (const double fill : fills) {
       dig.drag_length = std::min(drag_that_fills(lanes_[lane], at.drag, height, fill), longest);
       if (dig.drag_length == last) break;
-      add(lane, dig, at.start, rules);
+      add(lane, dig, at, rules);
       last = dig.drag_length;
     }
   }
@@ -693,11 +723,22 @@ class StepSearch {
 
   void add(std::size_t lane, const DigParameters& parameters, double start,
            const DigPathOptions& rules) {
+    add(lane, parameters, {start, start}, rules);
+  }
+
+  void add(std::size_t lane, const DigParameters& parameters, const Begin& begin,
+           const DigPathOptions& rules) {
     const Lane& at = lanes_[lane];
+    const double start = begin.start;
     if (is_barren(at, start)) return;
     const GroundProfile& ground = ground_of(at, start);
     auto path = make_dig_path(
-        machine_, parameters, start, [&](double x) { return ground(x) + above_start(); }, rules);
+        machine_, parameters, start,
+        [&](double x) {
+          const double on = ground(x) + above_start();
+          return x < start ? on : std::max(on, begin.height);
+        },
+        rules);
     auto* made = std::get_if<DigPath>(&path);
     if (made == nullptr || (task_.carried > 0.0 && !can_hold(*made))) return;
     const auto [nearest, farthest] = std::minmax_element(
@@ -729,10 +770,11 @@ class StepSearch {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
   }
 
-  /// Leaves those that are worth something, the best first; of many digs for volume the best on
+  /// Leaves those that are worth something, those that will not stall before others and the best
+  /// first; of many digs for volume the best on
   /// coarser ground and in coarser steps, where a dig costs a quarter. What a pass does to the
   /// shape of the ground is finer than that.
-  void rank() {
+  void rank(Aim aim) {
     const bool is_coarse = !task_.finishing && candidates_.size() > most_ranked;
     std::vector<std::optional<Terrain>> coarse(lanes_.size());
     for (const Candidate& each : candidates_) {
@@ -741,8 +783,11 @@ class StepSearch {
     }
     parallel_for(candidates_.size(), 0, [&](std::size_t i) {
       Candidate& each = candidates_[i];
-      each.worth = is_coarse ? worth_of(each, *coarse[each.lane], every_second(each.path))
-                             : worth_of(each, lanes_[each.lane].view.ground().terrain(), each.path);
+      const Terrain& ground =
+          is_coarse ? *coarse[each.lane] : lanes_[each.lane].view.ground().terrain();
+      const DigPath path = is_coarse ? every_second(each.path) : each.path;
+      each.worth = aim == Aim::wall ? 0.0 : worth_of(each, hard_, ground, path);
+      if (!(each.worth > 0.0)) each.worth = behind_sure * worth_of(each, simulator_, ground, path);
     });
     candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
                                      [](const Candidate& each) { return !(each.worth > 0.0); }),
@@ -754,8 +799,9 @@ class StepSearch {
   }
 
   /// By the soil that it lifts; 0 if it stalls.
-  double worth_of(const Candidate& candidate, const Terrain& ground, const DigPath& path) const {
-    const auto dig = dig_of_path(machine_, simulator_, ground, path, cycle_of(candidate));
+  double worth_of(const Candidate& candidate, const HeightMapSimulator& simulator,
+                  const Terrain& ground, const DigPath& path) const {
+    const auto dig = dig_of_path(machine_, simulator, ground, path, cycle_of(candidate));
     const auto* planned = std::get_if<PlannedDig>(&dig);
     return planned == nullptr ? 0.0 : planned->payload_mass / cost(*planned);
   }

@@ -986,6 +986,23 @@ TEST(StepSearch, BitesWhereNoFlatCutIsStrongEnough) {
   EXPECT_FALSE(dig_in_soil(job, 4.0, false));  // where passes are to take what is left
 }
 
+TEST(StepSearch, ABankOfHardSoilIsShavedFromTheOpenGroundBeyond) {
+  HandMadeJob job;
+  const JobMap map = job.map();
+  for_each_cell(job.ground.bank.z, [&](Cell at) {
+    const double x = job.ground.bank.x(at.col), y = job.ground.bank.y(at.row);
+    if (std::abs(y) < 0.5 && x > 7.3 && x < 10.0) job.ground.bank.z(at.row, at.col) = -0.5;
+  });
+  const auto dig = dig_in_soil(job, 4.5);
+  ASSERT_TRUE(dig);
+  EXPECT_FALSE(dig->may_stall);
+  EXPECT_EQ(dig->path.parameters.penetration_length, 0.0);
+  const BucketPose& first = dig->path.poses.front().bucket;
+  EXPECT_GT(first.x, 4.3) << "beyond the bank";
+  EXPECT_LT(first.z, -0.03) << "below its top";
+  EXPECT_GT(first.z, -0.2) << "over the floor";
+}
+
 /// Of the ground before a machine that falls towards it by so much, as hard soil.
 std::optional<StepDig> dig_on_slope(double slope) {
   HandMadeJob job;
