@@ -770,12 +770,13 @@ class StepSearch {
     return dig.cycle_energy + task_.settings.time_price * dig.cycle_time;
   }
 
-  /// Leaves those that are worth something, those that will not stall before others and the best
-  /// first; of many digs for volume the best on
-  /// coarser ground and in coarser steps, where a dig costs a quarter. What a pass does to the
-  /// shape of the ground is finer than that.
+  /// Leaves those that are worth something, the best first; for volume after a stall those that
+  /// will not before others. Of many digs for volume the best on coarser ground and in coarser
+  /// steps, where a dig costs a quarter. What a pass does to the shape of the ground is finer than
+  /// that.
   void rank(Aim aim) {
     const bool is_coarse = !task_.finishing && candidates_.size() > most_ranked;
+    const bool is_sure_first = !task_.may_risk && (aim == Aim::volume || aim == Aim::hard);
     std::vector<std::optional<Terrain>> coarse(lanes_.size());
     for (const Candidate& each : candidates_) {
       if (is_coarse && !coarse[each.lane])
@@ -786,7 +787,7 @@ class StepSearch {
       const Terrain& ground =
           is_coarse ? *coarse[each.lane] : lanes_[each.lane].view.ground().terrain();
       const DigPath path = is_coarse ? every_second(each.path) : each.path;
-      each.worth = aim == Aim::wall ? 0.0 : worth_of(each, hard_, ground, path);
+      each.worth = is_sure_first ? worth_of(each, hard_, ground, path) : 0.0;
       if (!(each.worth > 0.0)) each.worth = behind_sure * worth_of(each, simulator_, ground, path);
     });
     candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),

@@ -27,7 +27,7 @@ struct StepTask {
   DumpPlace dump;
   const std::vector<DigStart>& barren;  ///< digs that lifted hardly any, or were blocked
   std::vector<WorkLine> lines = {};     ///< to dig along
-  bool may_risk = false;                ///< a stall, to take off that end
+  bool may_risk = false;                ///< a stall, as no dig of the job stalled yet
   bool may_bite = true;                 ///< less than a bucket, where no more can be had
   double slack = 0.0;  ///< so far below the design ground does not count as too deep [m]
   /// A layer of a wide design is dug off before what is below this height of the site [m].
