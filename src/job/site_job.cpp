@@ -257,7 +257,7 @@ struct SiteJob::State {
   std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
   double way_in_hard() const;
-  JobStation not_too_far(JobStation station) const;
+  JobStation not_too_far(const JobStation& station) const;
   std::optional<JobStation> rest_of_way() const;
   LookTask look_task(const JobProgress& now) const;
   bool has_shape(const JobProgress& now, double share = 1.0) const {
@@ -760,11 +760,15 @@ double SiteJob::State::way_in_hard() const {
 
 /// The place of a row, or one before it in soil that has proved hard: far digs stall there, and
 /// what they leave is beyond reach from the next place.
-JobStation SiteJob::State::not_too_far(JobStation station) const {
+JobStation SiteJob::State::not_too_far(const JobStation& station) const {
   const double way = way_in_hard();
   const double most = move_in_hard * dig_size(settings.site.machine);
-  if (way > most + as_good_as_there) station.along += way * (1.0 - 1.0 / std::ceil(way / most));
-  return station;
+  if (!(way > most + as_good_as_there)) return station;
+  JobStation nearer = station;
+  nearer.along += way * (1.0 - 1.0 / std::ceil(way / most));
+  nearer = clear_of_obstacles({nearer}, frame, settings, map, first).front();
+  const bool goes_on = nearer.along < station.along + way - as_good_as_there;
+  return goes_on && nearer.along > station.along ? nearer : station;
 }
 
 /// The present place of a row, if the machine went but a part of the way there.
