@@ -15,6 +15,7 @@
 #include "base/non_finite.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "design/deviation.hpp"
 #include "design/pieces.hpp"
 #include "design/placement.hpp"
 #include "ground/hole_filling.hpp"
@@ -217,32 +218,7 @@ void add_volumes(const CellSums& sums, const Surface& ground, const Mask& unseen
 /// Cells that count: far enough from the rim and from steep faces.
 Mask counting_cells(const CellSums& sums, const HeightMap& grid, double margin) {
   const ArrayXXd share = (sums.area - sums.steep) / (grid.cell_size * grid.cell_size);
-  return inner_cells(sums.upright.select(share.min(0.5), share), grid.cell_size, margin);
-}
-
-Deviation deviation_of(const CellSums& sums, const HeightMap& ground, const CutOptions& options) {
-  const Mask counts = counting_cells(sums, ground, options.edge_margin);
-  std::vector<double> off;
-  double squares = 0.0;
-  std::size_t beyond = 0, within = 0;
-  for_each_cell(counts, [&](Cell at) {
-    if (!counts(at.row, at.col) || std::isnan(ground.z(at.row, at.col))) return;
-    const double e = std::abs(ground.z(at.row, at.col) -
-                              sums.height(at.row, at.col) / sums.area(at.row, at.col));
-    off.push_back(e);
-    squares += e * e;
-    if (e <= options.tolerance) ++within;
-    if (e > 2.0 * options.tolerance) ++beyond;
-  });
-  if (off.empty()) return {0.0, nan, nan, nan, false};
-  const auto n = static_cast<double>(off.size());
-  Deviation deviation;
-  deviation.area = n * ground.cell_size * ground.cell_size;
-  deviation.rms = std::sqrt(squares / n);
-  deviation.p95 = quantile(off, 0.95);
-  deviation.beyond_twice = static_cast<double>(beyond) / n;
-  deviation.is_within = static_cast<double>(within) >= 0.95 * n && deviation.beyond_twice <= 0.01;
-  return deviation;
+  return inner_cells(sums.upright.select(0.0, share), grid.cell_size, margin);
 }
 
 void require_one_layer(const CellSums& sums, const HeightMap& grid, const DesignSurface& design) {
@@ -257,6 +233,26 @@ void require_one_layer(const CellSums& sums, const HeightMap& grid, const Design
 
 }  // namespace
 
+Deviation deviation_of(const ArrayXXd& off, double cell_size, double tolerance) {
+  std::vector<double> errors = known_values(off.abs());
+  if (errors.empty()) return {0.0, nan, nan, nan, false};
+  double squares = 0.0;
+  std::size_t beyond = 0, within = 0;
+  for (const double e : errors) {
+    squares += e * e;
+    if (e <= tolerance) ++within;
+    if (e > 2.0 * tolerance) ++beyond;
+  }
+  const auto n = static_cast<double>(errors.size());
+  Deviation deviation;
+  deviation.area = n * cell_size * cell_size;
+  deviation.rms = std::sqrt(squares / n);
+  deviation.p95 = quantile(std::move(errors), 0.95);
+  deviation.beyond_twice = static_cast<double>(beyond) / n;
+  deviation.is_within = static_cast<double>(within) >= 0.95 * n && deviation.beyond_twice <= 0.01;
+  return deviation;
+}
+
 CutAndFill cut_and_fill(const DesignSurface& design, const Surface& ground,
                         const CutOptions& options) {
   require_surface(ground, "cut: ground");
@@ -270,7 +266,9 @@ CutAndFill cut_and_fill(const DesignSurface& design, const Surface& ground,
   result.outside_area = std::max(0.0, sums.whole_area - sums.placed_area);
   if (result.outside_area < 1e-9 * sums.whole_area) result.outside_area = 0.0;
   add_volumes(sums, ground, filled.unseen, options.errors, result);
-  result.deviation = deviation_of(sums, ground.height, options);
+  const Mask counts = counting_cells(sums, ground.height, options.edge_margin);
+  result.deviation = deviation_of(counts.select(ground.height.z - sums.height / sums.area, nan),
+                                  ground.height.cell_size, options.tolerance);
   const double missing = result.unseen_area + result.outside_area;
   if (missing > 0.0) {
     result.notes.push_back(readable(100.0 * missing / sums.whole_area, 2) +

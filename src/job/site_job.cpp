@@ -257,7 +257,7 @@ struct SiteJob::State {
   std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
   double way_in_hard() const;
-  JobStation not_too_far(const JobStation& station) const;
+  JobStation not_too_far() const;
   std::optional<JobStation> rest_of_way() const;
   LookTask look_task(const JobProgress& now) const;
   bool has_shape(const JobProgress& now, double share = 1.0) const {
@@ -742,7 +742,7 @@ std::optional<JobStation> SiteJob::State::next_place(const JobProgress& now) con
   const Standing on = {settings, map, first, ground.expected()};
   if (station.is_wide) return nearest_place(on, frame_at(station), station);
   if (station.is_again && !can_stand_now(on, frame_at(station), station)) return std::nullopt;
-  return not_too_far(station);
+  return not_too_far();
 }
 
 /// How far the machine still has to go along its row to the present place [m]; 0 if it does not
@@ -760,7 +760,8 @@ double SiteJob::State::way_in_hard() const {
 
 /// The place of a row, or one before it in soil that has proved hard: far digs stall there, and
 /// what they leave is beyond reach from the next place.
-JobStation SiteJob::State::not_too_far(const JobStation& station) const {
+JobStation SiteJob::State::not_too_far() const {
+  const JobStation& station = stations[record.station];
   const double way = way_in_hard();
   const double most = move_in_hard * dig_size(settings.site.machine);
   if (!(way > most + as_good_as_there)) return station;
@@ -774,7 +775,7 @@ JobStation SiteJob::State::not_too_far(const JobStation& station) const {
 /// The present place of a row, if the machine went but a part of the way there.
 std::optional<JobStation> SiteJob::State::rest_of_way() const {
   if (!(way_in_hard() > 0.0) || record.off_place > as_good_as_there) return std::nullopt;
-  return not_too_far(stations[record.station]);
+  return not_too_far();
 }
 
 /// Another place for the present station, if its soil has no place any more.

@@ -784,11 +784,13 @@ class StepSearch {
     }
     parallel_for(candidates_.size(), 0, [&](std::size_t i) {
       Candidate& each = candidates_[i];
-      const Terrain& ground =
-          is_coarse ? *coarse[each.lane] : lanes_[each.lane].view.ground().terrain();
-      const DigPath path = is_coarse ? every_second(each.path) : each.path;
-      each.worth = is_sure_first ? worth_of(each, hard_, ground, path) : 0.0;
-      if (!(each.worth > 0.0)) each.worth = behind_sure * worth_of(each, simulator_, ground, path);
+      const auto worth = [&](const HeightMapSimulator& simulator) {
+        if (is_coarse)
+          return worth_of(each, simulator, *coarse[each.lane], every_second(each.path));
+        return worth_of(each, simulator, lanes_[each.lane].view.ground().terrain(), each.path);
+      };
+      each.worth = is_sure_first ? worth(hard_) : 0.0;
+      if (!(each.worth > 0.0)) each.worth = behind_sure * worth(simulator_);
     });
     candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
                                      [](const Candidate& each) { return !(each.worth > 0.0); }),

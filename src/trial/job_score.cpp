@@ -3,11 +3,12 @@
 #include <excavplan/trial/job_score.hpp>
 
 #include <cmath>
-#include <vector>
+
+#include <excavplan/design/cut_and_fill.hpp>
 
 #include "base/check.hpp"
 #include "base/non_finite.hpp"
-#include "base/statistics.hpp"
+#include "design/deviation.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/window.hpp"
 #include "trial/plan_polygon.hpp"
@@ -29,23 +30,11 @@ double volume(const ArrayXXd& height, const ArrayXXd& weight, double cell) {
   return cell * cell * (height > 0.0).select(weight * height, 0.0).sum();
 }
 
-/// How far the ground is from the design in its zone.
-void add_errors(const JobDesign& job, const ScoredDesign& design, const HeightMap& after,
-                JobScore& score) {
-  std::vector<double> off;
-  double squares = 0.0, beyond = 0.0;
+/// In the zone.
+Deviation deviation_in_zone(const JobDesign& job, const ScoredDesign& design,
+                            const HeightMap& after) {
   const Mask zone = inner_cells(design.gentle, after.cell_size, job.edge_margin);
-  for_each_cell(zone, [&](Cell at) {
-    const double e = std::abs(after.z(at.row, at.col) - design.height.z(at.row, at.col));
-    if (!zone(at.row, at.col) || std::isnan(e)) return;
-    off.push_back(e);
-    squares += e * e;
-    if (e > 2.0 * job.tolerance) beyond += 1.0;
-  });
-  const auto n = static_cast<double>(off.size());  // of none all are NaN
-  score.rms = std::sqrt(squares / n);
-  score.p95 = off.empty() ? nan : quantile(off, 0.95);
-  score.beyond_twice = beyond / n;
+  return deviation_of(zone.select(after.z - design.height.z, nan), after.cell_size, job.tolerance);
 }
 
 /// Volume that changed in a keep-out, of one with a depth what changed below it.
@@ -99,7 +88,10 @@ JobScore score_job(const HiddenSite& site, const HeightMap& after, double seen) 
   }
 
   JobScore score;
-  add_errors(site.known.job, design, after, score);
+  const Deviation off = deviation_in_zone(site.known.job, design, after);
+  score.rms = off.rms;
+  score.p95 = off.p95;
+  score.beyond_twice = off.beyond_twice;
   score.seen = seen;
   score.design_cut = design.below(before.z);
   score.left = design.below(after.z);

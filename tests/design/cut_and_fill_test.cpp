@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/design/cut_and_fill.hpp>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -113,6 +114,20 @@ TEST(CutAndFill, RimAndSteepFacesDoNotCountForTheDeviation) {
   EXPECT_NEAR(volumes.deviation.area, 9.8 * 9.8, 1e-9);
   EXPECT_NEAR(volumes.deviation.rms, 0.0, 1e-12);
   EXPECT_EQ(cut_and_fill(plane_design(-10.0, 2.0, 10.0), ground).deviation.area, 0.0);
+}
+
+TEST(CutAndFill, WhatIsNearAnUprightFaceDoesNotCountForTheDeviation) {
+  DesignSurface design;
+  Tin tin;
+  constexpr double face = 5.03;  // of two floors, within a cell
+  for (const auto& [from, to, z] : {std::array{0.0, face, -0.8}, {face, 10.0, -0.3}}) {
+    tin.points.insert(tin.points.end(), {{from, 0, z}, {to, 0, z}, {to, 10, z}, {from, 10, z}});
+  }
+  tin.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}, {1, 4, 7}, {1, 7, 2}};
+  design.shape = tin;
+  const double counted = cut_and_fill(design, ground_at(0.0)).deviation.area;
+  EXPECT_LT(counted, 9.7 * 9.8);
+  EXPECT_GT(counted, 9.4 * 9.8);
 }
 
 TEST(CutAndFill, ABodyIsNoSurface) {
