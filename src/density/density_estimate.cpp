@@ -47,11 +47,11 @@ struct OutlinedScans {
 bool is_given(const Scan& scan) { return !scan.files.empty() || !scan.clouds.empty(); }
 
 /// The cells of a survey of known ground are the ground's, or as many of them together as the
-/// points of the scans need.
+/// points of the scans need, or little more than that.
 double cell_on(const GroundState& ground, double needed) {
-  constexpr double rounding = 1e-6;
+  constexpr double spare = 0.25;  // of a cell; ours
   const double cell = ground.terrain.bank.cell_size;
-  return cell * std::max(1.0, std::ceil(needed / cell - rounding));
+  return cell * std::max(1.0, std::ceil(needed / cell - spare));
 }
 
 std::optional<Rectangle> area_of_work(const DensityOptions& options) {

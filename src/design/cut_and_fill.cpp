@@ -32,6 +32,7 @@ using Eigen::ArrayXXd;
 constexpr int sign_reach = 2;          // cells to every side, of whose mean the sign counts
 constexpr double of_highest = 0.25;    // of the largest difference, the deviation of unknown ground
 constexpr double most_overlap = 1e-3;  // of a design's area
+constexpr double filled_from = 3.0;    // around unknown cells under a design; ours [m]
 constexpr double upright_area = 1e-9;  // of a face in a cell is that of rounding [m^2]
 
 /// What of the design lies in each cell, and how the ground lies to it.
@@ -125,6 +126,21 @@ void require_options(const CutOptions& options) {
   require_in("cut: least share on known ground", options.least_known_share, 0.0, 1.0);
 }
 
+/// The block of cells that holds all of some and so many around.
+struct CellBlock {
+  Eigen::Index row, col, rows, cols;
+};
+CellBlock block_around(const Mask& some, Eigen::Index around) {
+  Eigen::AlignedBox<Eigen::Index, 2> box;
+  for_each_cell(some, [&](Cell at) {
+    if (some(at.row, at.col)) box.extend(Eigen::Matrix<Eigen::Index, 2, 1>(at.row, at.col));
+  });
+  const Eigen::Index row = std::max<Eigen::Index>(0, box.min()(0) - around);
+  const Eigen::Index col = std::max<Eigen::Index>(0, box.min()(1) - around);
+  return {row, col, std::min(some.rows(), box.max()(0) + 1 + around) - row,
+          std::min(some.cols(), box.max()(1) + 1 + around) - col};
+}
+
 /// Unknown cells under the design, filled from around.
 struct FilledGround {
   std::optional<HeightMap> map;  ///< none if there are none
@@ -135,12 +151,18 @@ FilledGround filled_under(const DesignSurface& design, const HeightMap& ground) 
   if (!filled.unseen.any()) return filled;
   filled.unseen = filled.unseen && cover_of(design, ground).share > 0.0;
   if (!filled.unseen.any()) return filled;
+  CellBlock near =
+      block_around(filled.unseen, static_cast<Eigen::Index>(filled_from / ground.cell_size));
+  if (!ground.z.block(near.row, near.col, near.rows, near.cols).isFinite().any())
+    near = {0, 0, ground.z.rows(), ground.z.cols()};
+  ArrayXXd z = ground.z.block(near.row, near.col, near.rows, near.cols);
   std::vector<Cell> unknown;
-  for_each_cell(ground.z, [&](Cell at) {
-    if (std::isnan(ground.z(at.row, at.col))) unknown.push_back(at);
+  for_each_cell(z, [&](Cell at) {
+    if (std::isnan(z(at.row, at.col))) unknown.push_back(at);
   });
+  fill(z, unknown, Filling::membrane);
   filled.map = ground;
-  fill(filled.map->z, unknown, Filling::membrane);
+  filled.map->z.block(near.row, near.col, near.rows, near.cols) = z;
   return filled;
 }
 

@@ -21,20 +21,33 @@ struct DxfUnit {
   const char* name;
   double length;  // [m]
 };
-constexpr std::array<DxfUnit, 8> dxf_units = {{{1, "inch", 0.0254},
-                                               {2, "foot", 0.3048},
-                                               {3, "mile", 1609.344},
-                                               {4, "millimetre", 0.001},
-                                               {5, "centimetre", 0.01},
-                                               {6, "metre", 1.0},
-                                               {7, "kilometre", 1000.0},
-                                               {21, "US survey foot", 1200.0 / 3937.0}}};
+constexpr double survey_foot = 1200.0 / 3937.0;  // [m]
+constexpr std::array<DxfUnit, 18> dxf_units = {{{1, "inch", 0.0254},
+                                                {2, "foot", 0.3048},
+                                                {3, "mile", 1609.344},
+                                                {4, "millimetre", 0.001},
+                                                {5, "centimetre", 0.01},
+                                                {6, "metre", 1.0},
+                                                {7, "kilometre", 1000.0},
+                                                {8, "microinch", 2.54e-8},
+                                                {9, "mil", 2.54e-5},
+                                                {10, "yard", 0.9144},
+                                                {13, "micron", 1e-6},
+                                                {14, "decimetre", 0.1},
+                                                {15, "decametre", 10.0},
+                                                {16, "hectometre", 100.0},
+                                                {21, "US survey foot", survey_foot},
+                                                {22, "US survey inch", survey_foot / 12.0},
+                                                {23, "US survey yard", 3.0 * survey_foot},
+                                                {24, "US survey mile", 5280.0 * survey_foot}}};
 
 /// Places the blocks of a drawing and keeps the faces of the wanted layers.
 class Assembly {
  public:
   Assembly(const std::string& path, const DxfDrawing& drawing, const DesignFileOptions& options)
-      : path_(path), drawing_(drawing), options_(options) {}
+      : path_(path), drawing_(drawing), options_(options), wanted_(options.layers) {
+    if (wanted_.empty() && !options.surface.empty()) wanted_ = {options.surface};
+  }
 
   RawDesign assemble() {
     add(drawing_.entities, Eigen::Affine3d::Identity(), "0", 0);
@@ -73,8 +86,7 @@ class Assembly {
 
   void add_face(const DxfFace& face, const Eigen::Affine3d& place, const std::string& layer) {
     const std::string& own = face.layer == "0" ? layer : face.layer;
-    const auto& wanted = options_.layers;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), own) == wanted.end()) {
+    if (!wanted_.empty() && std::find(wanted_.begin(), wanted_.end(), own) == wanted_.end()) {
       ++left_out_;
       return;
     }
@@ -92,12 +104,18 @@ class Assembly {
 
   void set_unit() {
     const int code = drawing_.unit_code.value_or(0);
+    if (code == 0 && !options_.unit)
+      raw_.notes.emplace_back("the drawing tells no unit: metres were taken");
     for (const DxfUnit& unit : dxf_units) {
       if (unit.code != code) continue;
       raw_.unit = unit.length;
       raw_.unit_told_by = "$INSUNITS " + std::to_string(code) + ": " + unit.name;
       raw_.notes.push_back(raw_.unit_told_by + " was taken, which drawings often state wrongly");
+      return;
     }
+    if (code == 0 || options_.unit) return;
+    throw Error(ErrorKind::bad_file, path_ + ": $INSUNITS is " + std::to_string(code) +
+                                         ", which is no unit of ground; tell the unit");
   }
 
   std::string of_layers() const { return left_out_ > 0 ? " of these layers" : ""; }
@@ -120,6 +138,7 @@ class Assembly {
   const std::string& path_;
   const DxfDrawing& drawing_;
   const DesignFileOptions& options_;
+  std::vector<std::string> wanted_;  ///< layers; empty: all
   RawDesign raw_;
   std::size_t left_out_ = 0;
   std::uint64_t placed_ = 0;

@@ -117,6 +117,8 @@ struct CellSpan {
     const auto most = static_cast<double>(cells);
     first = static_cast<Eigen::Index>(std::clamp(std::floor(piece.lowest(axis) / cell), 0.0, most));
     end = static_cast<Eigen::Index>(std::clamp(std::ceil(piece.highest(axis) / cell), 0.0, most));
+    // What lies on a line between two cells is in the one beyond it.
+    if (first == end && piece.lowest(axis) >= 0.0 && end < cells) ++end;
   }
   Eigen::Index first;
   Eigen::Index end;

@@ -117,17 +117,30 @@ TEST(CutAndFill, RimAndSteepFacesDoNotCountForTheDeviation) {
 }
 
 TEST(CutAndFill, WhatIsNearAnUprightFaceDoesNotCountForTheDeviation) {
-  DesignSurface design;
-  Tin tin;
-  constexpr double face = 5.03;  // of two floors, within a cell
-  for (const auto& [from, to, z] : {std::array{0.0, face, -0.8}, {face, 10.0, -0.3}}) {
-    tin.points.insert(tin.points.end(), {{from, 0, z}, {to, 0, z}, {to, 10, z}, {from, 10, z}});
+  for (const double face : {5.03, 5.0, 4.2}) {  // of two floors, within a cell or between two
+    DesignSurface design;
+    Tin tin;
+    for (const auto& [from, to, z] : {std::array{0.0, face, -0.8}, {face, 10.0, -0.3}}) {
+      tin.points.insert(tin.points.end(), {{from, 0, z}, {to, 0, z}, {to, 10, z}, {from, 10, z}});
+    }
+    tin.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}, {1, 4, 7}, {1, 7, 2}};
+    design.shape = tin;
+    const double counted = cut_and_fill(design, ground_at(0.0)).deviation.area;
+    EXPECT_LT(counted, 9.7 * 9.8) << face;
+    EXPECT_GT(counted, 9.4 * 9.8) << face;
   }
-  tin.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}, {1, 4, 7}, {1, 7, 2}};
-  design.shape = tin;
-  const double counted = cut_and_fill(design, ground_at(0.0)).deviation.area;
-  EXPECT_LT(counted, 9.7 * 9.8);
-  EXPECT_GT(counted, 9.4 * 9.8);
+}
+
+TEST(CutAndFill, UnknownGroundFarFromTheDesignChangesNothing) {
+  HeightMap ground = ground_at(0.0);
+  const DesignSurface design = plane_design(-0.5, 0.0, 2.0);
+  ground.z.block(25, 25, 6, 6).setConstant(std::nan(""));
+  const CutAndFill near = cut_and_fill(design, ground);
+  ground.z.rightCols(20).setConstant(std::nan(""));
+  const CutAndFill both = cut_and_fill(design, ground);
+  EXPECT_GT(near.unseen_area, 0.0);
+  EXPECT_EQ(both.unseen_area, near.unseen_area);
+  EXPECT_EQ(both.cut.value, near.cut.value);
 }
 
 TEST(CutAndFill, ABodyIsNoSurface) {

@@ -271,6 +271,31 @@ TEST(DesignFile, TheUnitThatWasTakenIsTold) {
   EXPECT_NEAR(area_in_plan(read_design(drawing.path(), options)), 15.5 * 1.5, 1e-9);
 }
 
+TEST(Dxf, YardsAreReadAndLightYearsRefused) {
+  const PlainMesh mesh = battered_trench({0, 0});
+  const DesignFile yards("dxf", dxf(dxf_faces(mesh), 10));
+  EXPECT_EQ(read_design(yards.path()).unit, 0.9144);
+  const DesignFile none("dxf", dxf(dxf_faces(mesh), 0));
+  EXPECT_EQ(read_design(none.path()).notes.front(), "the drawing tells no unit: metres were taken");
+  const DesignFile far("dxf", dxf(dxf_faces(mesh), 19));
+  EXPECT_NE(error_about([&] { read_design(far.path()); }, far.path()).find("$INSUNITS is 19"),
+            string::npos);
+  DesignFileOptions options;
+  options.unit = 1.0;
+  EXPECT_EQ(read_design(far.path(), options).unit, 1.0);
+}
+
+TEST(Dxf, ASurfaceIsALayer) {
+  const DesignFile drawing("dxf", dxf(dxf_faces(battered_trench({0, 0})), 6));
+  DesignFileOptions options;
+  options.surface = "0";
+  EXPECT_GT(area_in_plan(read_design(drawing.path(), options)), 0.0);
+  options.surface = "elsewhere";
+  EXPECT_NE(error_about([&] { read_design(drawing.path(), options); }, drawing.path())
+                .find("of these layers"),
+            string::npos);
+}
+
 TEST(DesignFile, ItIsMovedIntoTheSite) {
   const DesignFile file("obj", obj(battered_trench({500000, 5000000})));
   DesignFileOptions options;

@@ -15,7 +15,7 @@ namespace excavplan {
 /// What a file of a design does not say itself.
 struct DesignFileOptions {
   /// Of several surfaces of a LandXML file, the one of this name; empty: the only one, or of
-  /// several the only one that is no existing ground.
+  /// several the only one that is no existing ground. Of a DXF drawing a layer, if no others are.
   std::string surface;
   /// Layers of a DXF drawing that are read; empty: all.
   std::vector<std::string> layers;

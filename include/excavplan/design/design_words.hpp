@@ -15,7 +15,7 @@ namespace excavplan {
 /// What a design is in words.
 enum class DesignKind {
   trench,  ///< a floor with walls around it
-  pit,     ///< the same, as wide as long
+  pit,     ///< the same, mostly wider
   slope,   ///< a face that rises to the left of a line, and a floor to the right of it
 };
 
