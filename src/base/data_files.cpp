@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -94,6 +95,24 @@ bool has_data_folder(const std::string& folder, const std::string& package_folde
   });
 }
 
+namespace {
+
+/// ": clay, loam", of the JSON files there.
+std::string names_in(const std::string& folder, const std::string& package_folder) {
+  std::set<std::string> names;
+  for (const fs::path& place : data_folders(package_folder)) {
+    std::error_code none;
+    for (const fs::directory_entry& each : fs::directory_iterator(place / folder, none)) {
+      if (each.path().extension() == ".json") names.insert(each.path().stem().string());
+    }
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? ": " : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
 std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
                             const std::string& package_folder) {
   std::error_code none;
@@ -106,7 +125,8 @@ std::string shipped_or_file(const std::string& folder, const std::string& name_o
   } catch (const Error&) {
     if (!has_data_folder(folder, package_folder)) throw;
     throw Error(ErrorKind::bad_input, "'" + name_or_path + "' is neither a file nor one of the " +
-                                          folder + " that excavplan ships");
+                                          folder + " that excavplan ships" +
+                                          names_in(folder, package_folder));
   }
 }
 

@@ -59,6 +59,19 @@ inline double distance_to_side(const Eigen::Vector2d& p, const Eigen::Vector2d& 
   return (p - a - along * side).norm();
 }
 
+/// Whether a place lies in a polygon or less than so far from it: of the middles of cells and half
+/// their size, so that no polygon is too narrow to be seen on a grid.
+inline bool is_near(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& at,
+                    double away) {
+  constexpr double rounding = 1e-9;
+  if (is_inside(polygon, at)) return true;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& next = polygon[(i + 1) % polygon.size()];
+    if (distance_to_side(at, polygon[i], next) < away - rounding) return true;
+  }
+  return false;
+}
+
 /// Whether it lies in a polygon with eight places so far around it.
 inline bool is_well_in(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& at,
                        double margin) {

@@ -71,7 +71,7 @@ void for_each_place(const DesignSurface& design, const Visit& visit) {
 }
 
 /// Twice the way from the middle to the farthest place.
-double length_of(const DesignSurface& design) {
+double diagonal_of(const DesignSurface& design) {
   const Rectangle all = extent_of(design);
   const Eigen::Vector2d middle(0.5 * (all.x_min + all.x_max), 0.5 * (all.y_min + all.y_max));
   double farthest = 0.0;
@@ -81,6 +81,13 @@ double length_of(const DesignSurface& design) {
   return 2.0 * farthest;
 }
 
+/// Of the rectangle of an area and a diagonal [m]; of the square, if there is none.
+double longer_side(double area, double diagonal) {
+  const double sum = std::sqrt(diagonal * diagonal + 2.0 * area);
+  const double difference = std::sqrt(std::max(0.0, diagonal * diagonal - 2.0 * area));
+  return difference > 0.0 ? 0.5 * (sum + difference) : std::sqrt(area);
+}
+
 }  // namespace
 
 JobShape shape_of(const DesignSurface& design, const CutAndFill& cut) {
@@ -88,7 +95,7 @@ JobShape shape_of(const DesignSurface& design, const CutAndFill& cut) {
   const Faces faces = std::visit([](const auto& shape) { return faces_of(shape); }, design.shape);
   JobShape shape;
   shape.volume = cut.cut;
-  shape.length = length_of(design);
+  shape.length = longer_side(faces.area, diagonal_of(design));
   shape.width = faces.area / shape.length;
   shape.depth = cut.cut.value / faces.area;
   shape.steep_share = faces.steep / faces.area;

@@ -321,7 +321,10 @@ bool turns_clear(const JobSettings& settings, const BasePose& base, double swing
       // From where the tail is as the machine looks ahead, in the sense of the swing.
       const double turned = wrapped(std::atan2(at.y(), at.x()) - pi);
       const double margin = std::asin(half_width / std::max(away, half_width));
-      clear &= turned < std::min(0.0, swing) - margin || turned > std::max(0.0, swing) + margin;
+      for (const double around : {-2.0 * pi, 0.0, 2.0 * pi}) {
+        clear &= turned + around < std::min(0.0, swing) - margin ||
+                 turned + around > std::max(0.0, swing) + margin;
+      }
     });
   }
   return clear;

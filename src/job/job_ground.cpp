@@ -32,7 +32,7 @@ constexpr double risen_share = 0.5;      // likewise of what rose, over its heig
 constexpr double softer = 0.5;           // than the soil before, the next that is tried
 constexpr double softest = 0.05;         // over the soil as told
 
-/// Of all that was cut, with the soil that lies on it again.
+/// Of all that was cut, with the soil that lies on it again. @param scanned  NaN where not seen
 std::optional<double> cut_above(const Terrain& expected, const Terrain& before,
                                 const Terrain& scanned) {
   if (before.loose.size() == 0 || !same_grid(scanned.bank, expected.bank)) return std::nullopt;
@@ -173,7 +173,11 @@ ScanNews JobGround::take_in(const SiteEvent& scanned) {
   SiteEvent event = scanned;
   const double shared = is_noisy() ? shared_height_sd(event.scan, *settings_.design.sensor) : 0.0;
   event.options.change.sensor_pattern_sd = shared;
-  const SiteUpdate update = site_.update(event);
+  const bool is_known = !site_.is_empty() && unseen_.empty() && scanned_.seen.size() == 0 &&
+                        site_.was_last(event.scan);
+  SiteUpdate update;
+  update.taken = is_known;
+  if (!is_known) update = site_.update(event);
   if (shared > 0.0 && scanned_.seen.size() > 0) return take_in_noisy(event, update);
   const Terrain expected = std::move(expected_);
   const GroundState before = std::move(scanned_);
@@ -184,6 +188,8 @@ ScanNews JobGround::take_in(const SiteEvent& scanned) {
   scanned_ = has_grown ? site_.ground_for({}, cells.extent(), cells.cell_size) : site_.ground();
   scanned_.terrain.doubts.clear();
   if (is_first) scanned_.deviation.setConstant(std::nan(""));
+  Terrain alone = scanned_.terrain;
+  alone.bank.z = (scanned_.seen >= event.time).select(alone.bank.z, std::nan(""));
   if (!is_first) {
     keep_unseen(expected, seen_, event.time, scanned_);
     keep_between(returns_in(event.scan, scanned_.terrain.bank), seen_, event.time, scanned_);
@@ -191,7 +197,7 @@ ScanNews JobGround::take_in(const SiteEvent& scanned) {
   hold_steep(settings_.site.soil, scanned_.terrain);
   begin_at_scan();
   if (!update.taken) return {};
-  return {cut_above(expected, before.terrain, scanned_.terrain), 0.0, update.alignment, true};
+  return {cut_above(expected, before.terrain, alone), 0.0, update.alignment, true};
 }
 
 /// The site takes what changed little for noise, and the mean of many scans hardly follows it: what
@@ -235,6 +241,11 @@ void JobGround::save(long long number) const {
   std::filesystem::remove(file_of(number - 2), none);
 }
 
+bool JobGround::can_load(long long number, long long updates) const {
+  const bool is_behind = site_.updates() == updates + 1 && site_.can_undo();
+  return (site_.updates() == updates || is_behind) && std::filesystem::exists(file_of(number));
+}
+
 void JobGround::forget() noexcept {
   try {
     if (!site_.is_empty()) site_.undo();
@@ -245,7 +256,7 @@ void JobGround::forget() noexcept {
 
 void JobGround::load(long long number, long long updates, const UnseenDigs& since) {
   const bool is_reader = access_ == SiteAccess::read;
-  if (site_.updates() > updates && !is_reader) site_.undo();
+  if (site_.updates() == updates + 1 && !is_reader) site_.undo();
   const bool is_one_ahead = is_reader && site_.updates() == updates + 1;
   if (site_.updates() != updates && !is_one_ahead) {
     throw Error(ErrorKind::bad_file, folder_ + ": its site has taken in " +

@@ -49,7 +49,7 @@ class JobGround {
  public:
   /// Opens the site of a folder. @param access  read: for load(), expect() and what they tell
   JobGround(const std::string& folder, const JobSettings& settings,
-            SiteAccess access = SiteAccess::write);
+            SiteAccess access = SiteAccess::of_job);
 
   const Site& site() const { return site_; }
   const Terrain& expected() const { return expected_; }
@@ -77,6 +77,8 @@ class JobGround {
   /// @param since  expected on it
   /// @throws Error (bad_file) if the site has taken in others
   void load(long long number, long long updates, const UnseenDigs& since);
+  /// Whether load() would find what it reads.
+  bool can_load(long long number, long long updates) const;
   /// Takes the first scan back, as no job begins with it.
   void forget() noexcept;
   /// Of the last scan taken in.

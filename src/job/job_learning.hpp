@@ -38,10 +38,12 @@ struct ScanDatum {
   Eigen::Vector3d plane() const { return -sum / scans; }
 };
 
-/// What a planned dig will tell of the soil's strength.
-struct StrengthSigns {
+/// What a planned dig will tell.
+struct DigSigns {
   double energy_share = 0.0;  ///< of ln of its energy in ln of the strength [-]
   double stalls_at = 0.0;     ///< least factor on the strength at which it stalls [-]; 0: not known
+  double strength = 1.0;      ///< factor on the strength that it was simulated with [-]
+  double layer = 0.0;         ///< loose soil under its drag, per thickness [kg/m]
 };
 
 /// Learnt from step to step; deviations before any are ours.
@@ -53,12 +55,15 @@ struct JobLearning {
   LearntNumber energy = {0.0, 0.25 * 0.25};      ///< ln(energy of the dig / simulated)
   double payload_scatter = 0.05 * 0.05;          ///< variance from dig to dig of that logarithm
   double energy_scatter = 0.08 * 0.08;           ///< likewise
+  double layer_variance =
+      0.008 * 0.008;  ///< of the layer that a dig takes beyond the one foretold [m^2]
+  double cycle_variance = 0.1 * 0.1;  ///< of the energy of a cycle over the one foretold
   /// ln of the factor on the soil's strength: of soil of one density, and of the density, which is
   /// told to 25 % and of which 100 % multiply the cohesion of loam or clay by e^2.2.
   LearntNumber strength = {0.0, 0.35 * 0.35 + 0.54 * 0.54};
 
-  ForetoldStep foretell(const PlannedDig& dig) const;
-  void learn(const PlannedDig& dig, const StrengthSigns& signs, const StepReport& report);
+  ForetoldStep foretell(const PlannedDig& dig, const DigSigns& signs) const;
+  void learn(const PlannedDig& dig, const DigSigns& signs, const StepReport& report);
   /// To other ground.
   void move() { strength.variance += place_variance; }
 
@@ -67,6 +72,10 @@ struct JobLearning {
   /// So many deviations above what is expected.
   double strength_factor(int deviations = 0) const;
   double hard_factor() const;  ///< that a dig should not stall at
+
+ private:
+  double beyond_planned(const DigSigns& signs) const;
+  void learn_spread(const PlannedDig& dig, const DigSigns& signs, const StepReport& report);
 };
 
 /// The same soil, so many times as strong.

@@ -14,6 +14,7 @@
 #include "base/non_finite.hpp"
 #include "base/plan_geometry.hpp"
 #include "base/statistics.hpp"
+#include "design/design_checks.hpp"
 #include "ground/window.hpp"
 
 namespace excavplan {
@@ -32,7 +33,7 @@ constexpr double around_rim = 0.1;       // of a cell, where ground is compared;
 constexpr double share_of_design = 0.5;  // of a cell that is one of the design
 const double steepest = CutOptions{}.steepest;
 
-/// The cells of a polygon.
+/// The cells whose middle lies in a polygon.
 template <typename Visit>
 void for_each_inside(const SitePolygon& polygon, const HeightMap& grid, Visit visit) {
   for_each_cell(grid.z, [&](Cell at) {
@@ -40,10 +41,19 @@ void for_each_inside(const SitePolygon& polygon, const HeightMap& grid, Visit vi
   });
 }
 
+/// Those that it touches, as a cable or a pole may be narrower than a cell.
+template <typename Visit>
+void for_each_touched(const SitePolygon& polygon, const HeightMap& grid, Visit visit) {
+  for_each_cell(grid.z, [&](Cell at) {
+    if (is_near(polygon, {grid.x(at.col), grid.y(at.row)}, 0.5 * grid.cell_size)) visit(at);
+  });
+}
+
 /// The design less its rim and its steep faces. @param share  of each cell that is in the design
 Mask counting(const HeightMap& target, const ArrayXXd& share, double edge_margin) {
   const double cell = target.cell_size;
-  ArrayXXd gentle = target.z.isNaN().select(0.0, share);
+  const Mask asks_nothing = share >= share_of_design && target.z.isNaN();
+  ArrayXXd gentle = asks_nothing.select(0.0, share);
   for_each_cell(target.z, [&](Cell at) {
     for_each_neighbour(target.z, at, [&](Cell next) {
       const double rise = std::abs(target.z(at.row, at.col) - target.z(next.row, next.col));
@@ -164,21 +174,22 @@ JobMap map_of(const JobSettings& settings, const HeightMap& ground) {
   map.target.z =
       below_ground((cover.share >= share_of_design).select(cover.height, std::nan("")), ground);
   map.counts = counting(map.target, cover.share, design.edge_margin);
+  map.beyond = area_beyond(settings.surface, cover, ground) / (ground.cell_size * ground.cell_size);
   map.dump = Mask::Constant(ground.z.rows(), ground.z.cols(), false);
   for (const DumpArea& area : design.dump_areas) {
     for_each_inside(area.polygon, ground, [&](Cell at) { map.dump(at.row, at.col) = true; });
   }
   map.forbidden = ArrayXXd::Constant(ground.z.rows(), ground.z.cols(), -infinity);
   for (const KeepOut& area : design.keep_out) {
-    for_each_inside(area.polygon, ground, [&](Cell at) {
+    for_each_touched(area.polygon, ground, [&](Cell at) {
       double& level = map.forbidden(at.row, at.col);
       const double highest = ground.z(at.row, at.col) - area.depth.value_or(-infinity);
       level = std::max(level, std::isnan(highest) ? infinity : highest);
     });
   }
   for (const JobObstacle& obstacle : design.obstacles) {
-    for_each_inside(obstacle.polygon, ground,
-                    [&](Cell at) { map.forbidden(at.row, at.col) = infinity; });
+    for_each_touched(obstacle.polygon, ground,
+                     [&](Cell at) { map.forbidden(at.row, at.col) = infinity; });
   }
   map.untouched = map.forbidden == infinity;
   map.dump = map.dump && !map.untouched;
@@ -272,7 +283,8 @@ JobProgress measured(JobProgress progress, const JobMap& map, const MeasuredGrou
     auto around = above_design_around(map, now.terrain, at);
     if (std::abs(median(around)) > 2.0 * tolerance) ++beyond;
   });
-  progress.seen = cells > 0 ? static_cast<double>(seen) / cells : 0.0;
+  progress.seen = cells > 0 ? seen / (cells + map.beyond) : 0.0;
+  progress.rms = progress.p95 = progress.beyond_twice = std::nan("");
   if (errors.empty()) return progress;
   std::sort(errors.begin(), errors.end());
   const auto count = static_cast<double>(errors.size());

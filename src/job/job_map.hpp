@@ -25,6 +25,7 @@ struct JobMap {
   Mask dump;               ///< whether soil may be laid there
   Mask untouched;          ///< a keep-out of any depth, or an obstacle: no soil may fall there
   Eigen::ArrayXXd forbidden;  ///< nothing is cut below [m]; -infinity: all may be, +infinity: none
+  double beyond = 0.0;        ///< cells of the design that lie beyond the ground, unseen
 };
 
 /// Height of a ground, with the soil that lies on it; NaN where it is not known [m].

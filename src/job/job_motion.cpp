@@ -57,12 +57,14 @@ Terrain seen_along(const JobSettings& settings, const Terrain& site, const DigLi
     const auto cell = cell_at(site.bank, place.x(), place.y());
     if (cell && site.obstacles.size() > 0) top = site.obstacles(cell->row, cell->col) - line.z;
     const double level = cell ? site.bank.z(cell->row, cell->col) - line.z : 0.0;
-    const auto stand = [&](const SitePolygon& polygon, double height) {
-      if (is_inside(polygon, place))
-        top = std::fmax(top, (std::isnan(level) ? 0.0 : level) + height);
+    const auto stand = [&](double height) {
+      top = std::fmax(top, (std::isnan(level) ? 0.0 : level) + height);
     };
-    for (const JobObstacle& each : settings.design.obstacles) stand(each.polygon, each.height);
-    if (settings.design.truck) stand(settings.design.truck->bed, settings.design.truck->bed_height);
+    for (const JobObstacle& each : settings.design.obstacles) {
+      if (is_near(each.polygon, place, 0.5 * motion_cell)) stand(each.height);
+    }
+    if (settings.design.truck && is_inside(settings.design.truck->bed, place))
+      stand(settings.design.truck->bed_height);
   });
   return view;
 }

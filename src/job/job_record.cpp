@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* record_format = "excavplan job";
-constexpr int version = 8;
+constexpr int version = 9;
 constexpr int numbers_of_pose = 6;
 
 constexpr std::array phases = {DigPhase::approach, DigPhase::penetrate, DigPhase::drag,
@@ -181,12 +181,12 @@ Json learning_json(const JobLearning& learning) {
           learning.payload_scatter,   learning.energy_scatter,       learning.strength.mean,
           learning.strength.variance, learning.floor.mean,           learning.floor.variance,
           learning.datum.sum.x(),     learning.datum.sum.y(),        learning.datum.sum.z(),
-          learning.datum.scans};
+          learning.layer_variance,    learning.cycle_variance,       learning.datum.scans};
 }
 
 JobLearning read_learning(JsonObject& object) {
-  const std::vector<double> numbers = object.numbers("learning", 16);
-  if (!(numbers[15] >= 1.0 && numbers[15] <= 1e9))
+  const std::vector<double> numbers = object.numbers("learning", 18);
+  if (!(numbers[17] >= 1.0 && numbers[17] <= 1e9))
     object.fail("learning", "ends in no count of scans");
   JobLearning learning;
   learning.height_bias = {numbers[0], numbers[1]};
@@ -197,7 +197,9 @@ JobLearning read_learning(JsonObject& object) {
   learning.strength = {numbers[8], numbers[9]};
   learning.floor = {numbers[10], numbers[11]};
   learning.datum.sum = {numbers[12], numbers[13], numbers[14]};
-  learning.datum.scans = static_cast<int>(numbers[15]);
+  learning.layer_variance = numbers[15];
+  learning.cycle_variance = numbers[16];
+  learning.datum.scans = static_cast<int>(numbers[17]);
   return learning;
 }
 
@@ -223,6 +225,8 @@ void for_each_number(Record& record, Visit visit) {
   visit("truck_load_kg", record.truck_load);
   visit("strength_share", record.signs.energy_share);
   visit("stalls_at", record.signs.stalls_at);
+  visit("simulated_strength", record.signs.strength);
+  visit("layer_kg_per_m", record.signs.layer);
   visit("seen_before_look", record.seen_before_look);
   visit("first_volume_m3", record.progress.design_volume);
   visit("payload_mass_kg", record.progress.payload_mass);
@@ -330,15 +334,21 @@ void save_earlier_record(const std::string& folder, const JobRecord& record) {
 
 JobRecord earlier_record(const std::string& folder) {
   const std::string path = earlier_path(folder);
-  const std::string none = folder + ": there is no step to take back";
-  require(std::filesystem::exists(path), none);
+  if (!std::filesystem::exists(path)) refuse_undo(folder);
   JobRecord record = read_record(path);
   const JobRecord now = load_record(folder);  // the same, if a change could not be written
-  require(record.last_step < now.last_step || record.progress.scans < now.progress.scans, none);
-  save_record(folder, record);
-  std::filesystem::remove(path);
+  const bool is_earlier =
+      record.last_step < now.last_step || record.progress.scans < now.progress.scans;
+  if (!is_earlier) refuse_undo(folder);
   return record;
 }
+
+void go_to_earlier(const std::string& folder, const JobRecord& earlier) {
+  save_record(folder, earlier);
+  std::filesystem::remove(earlier_path(folder));
+}
+
+void refuse_undo(const std::string& folder) { refuse(folder + ": there is no step to take back"); }
 
 bool holds_record(const std::string& folder) { return std::filesystem::exists(path_of(folder)); }
 

@@ -19,8 +19,6 @@
 
 namespace excavplan {
 
-inline constexpr const char* job_file = "job.json";
-
 struct JobRecord {
   std::size_t station = 0;            ///< where the machine works now
   BasePose base;                      ///< where it stands
@@ -31,13 +29,13 @@ struct JobRecord {
   long long last_step = 0;            ///< number of the step that was made last
   std::optional<JobStep> present;     ///< that is not done yet
   std::optional<PlannedDig> planned;  ///< of it, if it is a dig
-  StrengthSigns signs;                ///< likewise
+  DigSigns signs;                     ///< likewise
   std::vector<JobStep> unseen;        ///< digs since the last scan
   long long site_updates = 0;         ///< scans that the site had taken in
   long long grounds = 0;              ///< that were written, one after each scan, taken or not
   double deepest_cut = 0.5;           ///< of one dig [m]; less after a stall
   bool has_arrived = false;           ///< at its present station
-  bool wants_scan = false;            ///< after a stall
+  bool wants_scan = false;            ///< before the next dig
   int scans_not_taken = 0;            ///< in succession
   int passes_here = 0;                ///< along the floor from this station
   int bench = 0;                      ///< layer of a wide design that is dug from this station
@@ -62,7 +60,11 @@ bool holds_record(const std::string& folder);
 
 /// That of before the last change, for SiteJob::undo().
 void save_earlier_record(const std::string& folder, const JobRecord& record);
-/// Makes it the present one. @throws Error (bad_input) if there is none
+/// @throws Error (bad_input) if there is none
 JobRecord earlier_record(const std::string& folder);
+/// Makes the earlier record the present one.
+void go_to_earlier(const std::string& folder, const JobRecord& earlier);
+/// The error (bad_input) of SiteJob::undo().
+[[noreturn]] void refuse_undo(const std::string& folder);
 
 }  // namespace excavplan

@@ -17,6 +17,7 @@
 #include "base/check.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "design/design_checks.hpp"
 #include "design/design_walls.hpp"
 #include "ground/slopes.hpp"
 #include "job/dump_place.hpp"
@@ -39,7 +40,8 @@ constexpr std::size_t most_unseen = 5;           // digs between two scans
 constexpr std::size_t most_unseen_passes = 2;    // likewise of passes
 constexpr std::size_t most_unseen_on_steps = 4;  // likewise along faces, each in its lane
 constexpr double allowance = 0.5;       // over the design, in tolerances: what is too deep stays so
-constexpr double middle = -0.05;        // of what passes leave, over the design, in tolerances
+constexpr double middle = 0.1;          // of what passes leave, over the design, in tolerances:
+                                        // the lowest of some passes stays
 constexpr double most_allowance = 0.8;  // of passes to that end, likewise
 constexpr double floor_reading_sd = 0.005;   // of that middle at one place [m]
 constexpr double least_allowance = -0.4;     // likewise
@@ -253,6 +255,7 @@ struct SiteJob::State {
   JobStep move_step(const JobStation& station);
   JobStep leave();
   JobStep go_to(const JobStation& place);
+  void forget_failures();
   std::optional<JobStation> place_to_dump_from();
   std::optional<JobStation> missed_place(const JobProgress& now) const;
   std::optional<JobStation> next_place(const JobProgress& now) const;
@@ -387,6 +390,7 @@ std::vector<double> SiteJob::State::benches_below() const {
     if (!std::isnan(z)) top = std::max(top, z);
     low = std::min(low, map.target.z(cell.row, cell.col));
   });
+  if (!(top > low)) return benches;
   const double height = has_steps() ? thin_bench : bench_height;
   const int count = static_cast<int>(std::round((top - low) / height));
   for (int i = 1; i < count; ++i) benches.push_back(top - (top - low) * i / count);
@@ -516,7 +520,7 @@ void SiteJob::State::foretell(JobStep& step, const DumpPlace& dump, StepDig& dig
     dig.dig.cycle_energy = after->total.energy;
     dig.dig.cycle_time = after->total.time;
   }
-  step.predicted = record.learning.foretell(dig.dig);
+  step.predicted = record.learning.foretell(dig.dig, dig.signs);
   if (!step.dumps_first) return;
   const auto before =
       dump_of(machine, step.carried->joints.head<3>(), cycle_after(dump, false, carried));
@@ -581,6 +585,9 @@ std::optional<JobStep> SiteJob::State::dump_step() {
 JobStep SiteJob::State::move_step(const JobStation& station) {
   JobStep step = step_of(JobAction::move);
   step.base = base_of(station);
+  step.warnings = standing_warnings(settings, ground.expected(), step.base);
+  step.trustworthy = std::none_of(step.warnings.begin(), step.warnings.end(),
+                                  [](const Warning& each) { return each.ends_trust; });
   return step;
 }
 
@@ -768,6 +775,8 @@ JobStation SiteJob::State::not_too_far() const {
   JobStation nearer = station;
   nearer.along += way * (1.0 - 1.0 / std::ceil(way / most));
   nearer = clear_of_obstacles({nearer}, frame, settings, map, first).front();
+  if (!settings.design.obstacles.empty() && !stands_clear(nearer, frame, settings, map, first))
+    return station;
   const bool goes_on = nearer.along < station.along + way - as_good_as_there;
   return goes_on && nearer.along > station.along ? nearer : station;
 }
@@ -810,19 +819,27 @@ std::optional<JobStation> SiteJob::State::missed_place(const JobProgress& now) c
   return is_undone ? place : std::nullopt;
 }
 
-JobStep SiteJob::State::go_to(const JobStation& place) {
-  record.passes_here = 0;
-  record.bench = 0;
+/// Of digs from where the machine stood.
+void SiteJob::State::forget_failures() {
   record.fruitless = 0;
   record.fruitless_digs = 0;
   record.barren.clear();
+}
+
+JobStep SiteJob::State::go_to(const JobStation& place) {
+  record.passes_here = 0;
+  record.bench = 0;
+  forget_failures();
   record.wants_scan = place.is_lookout();
   return move_step(place);
 }
 
 /// To the next place from which there is something to do, or the end.
 JobStep SiteJob::State::leave() {
-  if (const auto place = place_to_dump_from()) return move_step(*place);
+  if (const auto place = place_to_dump_from()) {
+    forget_failures();
+    return move_step(*place);
+  }
   const JobProgress now = progress();
   learn_floor();
   if (const auto place = missed_place(now)) {
@@ -956,7 +973,6 @@ void SiteJob::State::end_step(const StepReport& report) {
     if (!report.base) record.base = step.base;
     record.off_place = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
     record.has_arrived = true;
-    record.carried.reset();
     record.learning.move();
     ++record.progress.moves;
   }
@@ -1105,6 +1121,7 @@ void SiteJob::done(long long step, const StepReport& report) {
   const std::optional<JobStep>& present = state_->record.present;
   if (!present || present->id != step || present->what == JobAction::stop) return;
   require_report(*present, report);
+  require_plausible(*present, report, state_->settings.site.machine);
   const JobRecord before = state_->record;
   state_->keep_whole([&] {
     state_->end_step(report);
@@ -1130,7 +1147,11 @@ void SiteJob::look(const Scan& scan, double time) {
 
 void SiteJob::undo() {
   state_->keep_whole([&] {
-    state_->record = earlier_record(state_->folder);
+    const JobRecord earlier = earlier_record(state_->folder);
+    if (!state_->ground.can_load(earlier.grounds, earlier.site_updates))
+      refuse_undo(state_->folder);
+    go_to_earlier(state_->folder, earlier);
+    state_->record = earlier;
     state_->hang_design();
     state_->restore();
   });
@@ -1143,6 +1164,12 @@ std::vector<Warning> SiteJob::wall_warnings() const {
   task.base.reset();
   const auto wall = weakest_wall(task);
   return wall ? std::vector<Warning>{warning_of(*wall)} : std::vector<Warning>();
+}
+
+std::vector<Warning> SiteJob::design_warnings() const {
+  const JobSettings& settings = state_->settings;
+  return excavplan::design_warnings(settings.design, settings.surface, state_->first.bank,
+                                    settings.site.machine);
 }
 
 JobProgress SiteJob::progress() const { return state_->progress(); }

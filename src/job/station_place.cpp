@@ -51,6 +51,16 @@ bool is_tail_clear(const JobSettings& settings, const Vector2d& at) {
   });
 }
 
+/// Its swing goes there, and it stands on the sides of its tracks.
+bool can_look_across(const Machine& machine, double swung) {
+  const bool turns = machine.swing && machine.swing->lower < swung && swung < machine.swing->upper;
+  const bool stands =
+      !machine.body || std::abs(machine.body->centre.x()) < side_edge * machine.body->front_edge;
+  return turns && stands;
+}
+
+}  // namespace
+
 bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSettings& settings,
                   const JobMap& map, const Terrain& ground) {
   const BasePose base = ahead_of(base_at(frame, station, ground, settings.site.machine), frame);
@@ -67,16 +77,6 @@ bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSet
   }
   return clear;
 }
-
-/// Its swing goes there, and it stands on the sides of its tracks.
-bool can_look_across(const Machine& machine, double swung) {
-  const bool turns = machine.swing && machine.swing->lower < swung && swung < machine.swing->upper;
-  const bool stands =
-      !machine.body || std::abs(machine.body->centre.x()) < side_edge * machine.body->front_edge;
-  return turns && stands;
-}
-
-}  // namespace
 
 std::optional<PlacesBeside> places_beside(const JobSettings& settings, const JobMap& map,
                                           const Terrain& first, const JobFrame& frame) {

@@ -48,6 +48,10 @@ bool can_stand_now(const Standing& on, const JobFrame& frame, const JobStation& 
 std::optional<JobStation> nearest_place(const Standing& on, const JobFrame& frame,
                                         const JobStation& station);
 
+/// Whether the machine, a little off there too, turns clear of obstacles to a place for soil.
+bool stands_clear(const JobStation& station, const JobFrame& frame, const JobSettings& settings,
+                  const JobMap& map, const Terrain& ground);
+
 /// Stations of one lane group, moved along their line so that the machine turns clear from each to
 /// its dump and no gap is left between what is dug from them; what one place cannot serve, two do;
 /// one that cannot stays.

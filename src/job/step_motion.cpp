@@ -16,14 +16,16 @@ constexpr double standing_cell = 0.1;  // of the ground under the machine; ours 
 
 }  // namespace
 
-StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, const JobStep& step) {
+std::vector<Warning> standing_warnings(const JobSettings& settings, const Terrain& ground,
+                                       const BasePose& base) {
   const Machine& machine = settings.site.machine;
+  const GroundAlong under(ground, dig_line(base), standing_extent(machine), standing_cell);
+  return standing_ground(machine, under.terrain().surface()).warnings;
+}
+
+StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, const JobStep& step) {
   StepMotion checked;
-  checked.warnings = standing_ground(machine, GroundAlong(ground, dig_line(step.base),
-                                                          standing_extent(machine), standing_cell)
-                                                  .terrain()
-                                                  .surface())
-                         .warnings;
+  checked.warnings = standing_warnings(settings, ground, step.base);
   const auto motion = motion_of(settings, ground, step);
   if (const auto* stopped = std::get_if<BlockedWay>(&motion)) {
     checked.blocked = stopped->message;

@@ -24,6 +24,10 @@ struct StepMotion {
 };
 
 /// motion_of() a step and standing_ground().
+/// Of the ground under the machine at a place (standing_ground()).
+std::vector<Warning> standing_warnings(const JobSettings& settings, const Terrain& ground,
+                                       const BasePose& base);
+
 StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, const JobStep& step);
 
 }  // namespace excavplan

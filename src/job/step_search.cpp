@@ -316,8 +316,20 @@ class StepSearch {
     }
     if (!best) return best;
     best->signs.stalls_at = stalls_at(lane, best->path);
+    best->signs.strength = task_.strength_factor;
+    best->signs.layer = layer_under(best->path);
     add_approach(lane, best->path);
     return best;
+  }
+
+  /// Loose soil per thickness below the way of a bucket through the ground [kg/m].
+  double layer_under(const DigPath& path) const {
+    const auto lifted = std::find_if(path.poses.begin(), path.poses.end(), [](const DigPose& pose) {
+      return pose.phase == DigPhase::lift;
+    });
+    const double length = path.poses.front().bucket.x - std::prev(lifted)->bucket.x;
+    return loose_mass(task_.settings.site.soil,
+                      machine_.bucket.width_outside * std::max(0.0, length));
   }
 
   /// The least factor on the soil's strength at which a dig stalls, within the bounds.

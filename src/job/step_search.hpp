@@ -54,7 +54,7 @@ struct StepDig {
   DigPath path;         ///< in the frame of the line, with its approach
   PlannedDig dig;       ///< with its cycle
   ShapeChange change;
-  StrengthSigns signs;
+  DigSigns signs;
   bool may_stall = false;  ///< if the soil is as strong as StepTask::hard_factor
   double worth = 0.0;      ///< volume of the design per cost of the cycle [m^3/J]
 };

@@ -89,6 +89,24 @@ BucketPose forward_kinematics(const Machine& machine, const JointAngles& joints)
   return {at.tip.x(), at.tip.y(), wrap_near(at.phi3 + pi - machine.beta(), 0.0)};
 }
 
+double digging_depth(const Machine& machine) {
+  constexpr int steps = 60;  // of each joint; ours
+  const auto at = [&](Eigen::Index joint, int step) {
+    const JointLimits& limits = machine.limits[static_cast<std::size_t>(joint)];
+    return limits.lower + (limits.upper - limits.lower) * step / steps;
+  };
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int boom = 0; boom <= steps; ++boom) {
+    for (int arm = 0; arm <= steps; ++arm) {
+      for (int bucket = 0; bucket <= steps; ++bucket) {
+        const JointAngles joints(at(0, boom), at(1, arm), at(2, bucket));
+        lowest = std::min(lowest, link_positions(machine, joints).tip.y());
+      }
+    }
+  }
+  return -lowest;
+}
+
 std::variant<JointAngles, Unreachable> inverse_kinematics(const Machine& machine,
                                                           const BucketPose& pose) {
   const double phi3 = pose.floor_angle - pi + machine.beta();

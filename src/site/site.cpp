@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -128,7 +129,7 @@ struct Site::State {
 
   bool is_empty() const { return site.manifest.generation == 0; }
   void require_writable() const {
-    require(access == SiteAccess::write, store.path() + ": the site is open for reading");
+    require(access != SiteAccess::read, store.path() + ": the site is open for reading");
   }
   void require_new(const SiteEvent& event, const std::string& digest) const;
   /// @return what became of it, and the site with it
@@ -159,9 +160,9 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
   next.manifest = site.manifest;
   next.belief = site.belief;
   if (is_empty()) {
-    next.ground = first_ground(event.before.value_or(event.scan), event.time, settings);
+    next.ground =
+        first_ground(event.before.value_or(event.scan), event.time, settings, update.warnings);
     next.first = next.ground;
-    update.warnings = event.scan.doubts;
     update.taken = true;
   } else {
     next.first = site.first;
@@ -186,9 +187,24 @@ std::pair<SiteUpdate, StoredSite> Site::State::answer(const SiteEvent& event) co
   return {std::move(update), std::move(next)};
 }
 
+namespace {
+
+/// The scans of a job's site are taken in by the job.
+const std::string& open_for(const std::string& folder, SiteAccess access) {
+  if (access != SiteAccess::write || !std::filesystem::exists(folder + '/' + job_file))
+    return folder;
+  throw Error(ErrorKind::bad_file, folder +
+                                       ": holds a job, which takes in the scans of its site "
+                                       "itself (plan-site scan, SiteJob::look())");
+}
+
+}  // namespace
+
 Site::Site(const std::string& folder, SiteSettings settings, SiteAccess access)
-    : state_(new State{
-          SiteStore(folder, access == SiteAccess::write), std::move(settings), access, {}}) {
+    : state_(new State{SiteStore(open_for(folder, access), access != SiteAccess::read),
+                       std::move(settings),
+                       access,
+                       {}}) {
   if (state_->store.holds_site()) {
     state_->site = state_->store.load();
     require_settings(folder, state_->site.manifest, state_->settings);
@@ -221,6 +237,11 @@ void Site::undo() {
 }
 
 bool Site::is_empty() const { return state_->is_empty(); }
+bool Site::was_last(const Scan& scan) const {
+  const std::vector<SiteRecord>& latest = state_->site.manifest.latest;
+  return !latest.empty() && latest.back().scan == scan_digest(scan);
+}
+bool Site::can_undo() const { return state_->store.can_undo(state_->site.manifest); }
 long long Site::updates() const { return state_->site.manifest.generation; }
 long long Site::digs() const { return state_->site.manifest.digs; }
 double Site::cell_size() const { return state_->site.manifest.cell_size; }

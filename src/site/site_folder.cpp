@@ -28,7 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* lock_name = "site.lock";
 constexpr std::uint64_t most_stored_bytes = std::uint64_t{1} << 32;  // ours
 
 [[noreturn]] void fail(const std::string& path, const char* what) {
@@ -64,13 +63,14 @@ std::string stored_name(const char* kind, long long generation, const char* endi
   return std::string(kind) + '-' + std::to_string(generation) + ending;
 }
 
-SiteFolder::SiteFolder(std::string path, bool locked) : path_(std::move(path)) {
-  if (locked) lock();
+SiteFolder::SiteFolder(std::string path, bool locked, const char* lock_file)
+    : path_(std::move(path)) {
+  if (locked) lock(lock_file);
 }
 
-void SiteFolder::lock() {
+void SiteFolder::lock(const char* name) {
   make_folder(path_);
-  const std::string file = path_of(lock_name);
+  const std::string file = path_of(name);
   constexpr int flags = O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK;
   lock_ = ::open(file.c_str(), flags, 0666);
   if (lock_ < 0) fail(file, "cannot be opened");

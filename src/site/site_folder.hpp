@@ -26,8 +26,9 @@ class SiteFolder {
  public:
   /// @param locked  against other processes, until this object ends; the folder is then made if
   /// it is not there
+  /// @param lock_file  file that is locked
   /// @throws Error (bad_file) if it cannot be made or another process holds it: names that one
-  SiteFolder(std::string path, bool locked);
+  SiteFolder(std::string path, bool locked, const char* lock_file = "site.lock");
   ~SiteFolder();
   SiteFolder(SiteFolder&& other) noexcept;
   SiteFolder& operator=(SiteFolder&& other) = delete;
@@ -54,7 +55,7 @@ class SiteFolder {
   void keep_only(const std::vector<std::string>& names) const;
 
  private:
-  void lock();
+  void lock(const char* name);
   void require_name(const StoredFile& file) const;
   void require_same(const StoredFile& file, const std::string& digest) const;
 

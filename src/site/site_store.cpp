@@ -98,9 +98,13 @@ void SiteStore::save(const StoredSite& now, StoredSite& next) const {
   folder_.keep_only(names_of(manifest));
 }
 
+bool SiteStore::can_undo(const SiteManifest& now) const {
+  return !now.previous.name.empty() && folder_.has(now.previous.name);
+}
+
 StoredSite SiteStore::undo(const SiteManifest& now) const {
   const StoredFile& previous = now.previous;
-  require(!previous.name.empty() && folder_.has(previous.name),
+  require(can_undo(now),
           path() + ": there is no update to undo: of all updates the last one is kept");
   StoredSite before = load(folder_.read(previous));
   folder_.rename(previous.name, site_manifest);

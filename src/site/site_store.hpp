@@ -39,6 +39,7 @@ class SiteStore {
   /// @return the state before the last one
   /// @throws Error (bad_input) if there is none or it is not kept
   StoredSite undo(const SiteManifest& now) const;
+  bool can_undo(const SiteManifest& now) const;  ///< whether that one is kept
 
  private:
   StoredFile save(const char* kind, const GroundState& ground, long long generation) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <excavplan/scans/scan_terrain.hpp>
@@ -147,11 +148,16 @@ Mask returns_in(const Scan& scan, const HeightMap& grid) {
   return returns;
 }
 
-GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings) {
+GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings,
+                         std::vector<Warning>& warnings) {
   const double fresh = settings.soil.void_ratio_loose;
   GroundState ground = unseen_ground(extent_of(scan, 0), *settings.cell_size, fresh);
   const HeightMap& grid = ground.terrain.bank;
-  Terrain seen = terrain_from_scan(scan, grid.extent(), grid.cell_size).terrain;
+  ScannedTerrain scanned = terrain_from_scan(scan, grid.extent(), grid.cell_size);
+  Terrain seen = std::move(scanned.terrain);
+  // Its extent is a rectangle, of which no scan need show all.
+  std::copy_if(scanned.warnings.begin(), scanned.warnings.end(), std::back_inserter(warnings),
+               [](const Warning& each) { return each.code != WarningCode::unseen_ground; });
   if (seen.obstacles.size() > 0) ground.terrain.obstacles = std::move(seen.obstacles);
   enter(returns_in(scan, seen.bank), seen.bank, time, ground);
   ground.frame = settings.frame;

@@ -21,7 +21,8 @@ Mask returns_in(const Scan& scan, const HeightMap& grid);
 
 /// Ground that a site did not know, undisturbed as the first scan shows it, on the site's grid.
 /// @throws Error as terrain_from_scan() and unseen_ground()
-GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings);
+GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings,
+                         std::vector<Warning>& warnings);
 
 struct SurveyedEvent {
   std::optional<DensityEstimate> estimate;

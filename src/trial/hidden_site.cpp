@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
@@ -25,10 +26,20 @@ JsonObject opened(const std::string& path) {
   return JsonObject::of_others(path, read_file(path, most_foreign_bytes));
 }
 
+/// The file that a key names. @param folder  "soils"
+std::string shipped(JsonObject& site, const char* key, const char* folder) {
+  const std::string name = site.text(key);
+  try {
+    return shipped_or_file(folder, name);
+  } catch (const Error& error) {
+    site.fail(key, error.what());
+  }
+}
+
 /// The product's soil of that name with the numbers that the site states in their place. Dug soil
 /// keeps its relative density.
 SoilKind nominal_soil(JsonObject site) {
-  SoilKind soil = load_soil(shipped_or_file("soils", site.text("name")));
+  SoilKind soil = load_soil(shipped(site, "name", "soils"));
   const double looseness =
       (soil.void_ratio_max - soil.void_ratio_loose) / (soil.void_ratio_max - soil.void_ratio_min);
   const bool own_voids = site.states("e_max") || site.states("e_min");
@@ -44,7 +55,11 @@ SoilKind nominal_soil(JsonObject site) {
   soil.void_ratio_loose = site.number_or("e_loose", soil.void_ratio_loose, 0.01, 20.0);
   soil.angle_of_repose =
       degree * site.number_or("repose_deg", soil.angle_of_repose / degree, 3.0, 80.0);
-  require_soil(soil);
+  try {
+    require_soil(soil);
+  } catch (const Error& error) {
+    site.fail("name", std::string("with the numbers beside it is no soil: ") + error.what());
+  }
   return soil;
 }
 
@@ -129,13 +144,19 @@ void set_void_ratios(const TrueDensity& density, const SoilKind& soil, Terrain& 
   });
 }
 
-SiteBrief read_site_brief(const std::string& path) {
+SiteBrief read_site_brief(const std::string& file_or_folder) {
+  const bool is_folder = std::filesystem::is_directory(file_or_folder);
+  const std::string path = file_or_folder + (is_folder ? "/site.json" : "");
   SiteBrief brief;
   brief.job = read_plain_site(path);
   JsonObject site = opened(path);
   brief.soil = nominal_soil(site.object("soil"));
   brief.sensor = sensor_of(site.object("sensor"));
-  if (site.states("machine")) brief.machine = site.object("machine").text("class");
+  if (site.states("machine")) {
+    JsonObject machine = site.object("machine");
+    (void)shipped(machine, "class", "machines");
+    brief.machine = machine.text("class");
+  }
   if (site.states("prior")) {
     JsonObject prior = site.object("prior");
     brief.density = {prior.number("density_mean_percent", 0.0, 100.0),

@@ -57,7 +57,7 @@ class Pattern {
   HeightMap field_;
 };
 
-/// Heights along a horizontal line.
+/// A sensor and how it looks.
 struct Place {
   Vector3d sensor;
   Vector3d axis;    ///< of the field of view
@@ -171,7 +171,8 @@ HeightMap with_obstacles(const HeightMap& surface, const std::vector<JobObstacle
   HeightMap seen = surface;
   for (const JobObstacle& obstacle : obstacles) {
     for_each_cell(seen.z, [&](Cell at) {
-      if (!is_inside(obstacle.polygon, {seen.x(at.col), seen.y(at.row)})) return;
+      if (!is_near(obstacle.polygon, {seen.x(at.col), seen.y(at.row)}, 0.5 * seen.cell_size))
+        return;
       seen.z(at.row, at.col) = surface.z(at.row, at.col) + obstacle.height;
     });
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include <excavplan/job/job_motion.hpp>
@@ -15,7 +16,9 @@
 #include <excavplan/trial/job_score.hpp>
 
 #include "base/angles.hpp"
+#include "base/random.hpp"
 #include "base/statistics.hpp"
+#include "design/design_checks.hpp"
 #include "job/dump_place.hpp"
 #include "job/hand_made_job.hpp"
 #include "job/job_ground.hpp"
@@ -719,6 +722,8 @@ TEST(JobStations, TheTailSweepsBehindOnTheSideAwayFromTheSwing) {
   EXPECT_FALSE(clear_of(-1.9, 0.0, 0.0));
   EXPECT_FALSE(clear_of(0.0, -1.75, 0.5));  // near the axis the tail takes up a wider angle
   EXPECT_TRUE(clear_of(-3.0, 0.0, 0.0));
+  EXPECT_FALSE(clear_of(2.0, 0.0, 2.6));  // straight ahead, where the tail comes round to
+  EXPECT_FALSE(clear_of(2.0, -0.1, 2.6));
 }
 
 TEST(JobStations, OfAWallThatReachesFarWhatIsNearCounts) {
@@ -1365,9 +1370,112 @@ TEST(JobLearning, ADigThatIsLittleOfItsCycleTellsNothingOfItsEnergy) {
   EXPECT_GT(learning.energy.mean, 0.0);
 }
 
+TEST(JobLearning, OfADigInSofterSoilTheStrengthIsThatOfTheSoil) {
+  PlannedDig dig;
+  dig.fill = 0.9;
+  dig.energy = 4e4;
+  dig.cycle_energy = 1e5;
+  constexpr double share = 0.5, planned = -0.6, truth = -0.3;
+  StepReport report;
+  report.joint_work = 6e4 + 4e4 * std::exp(share * (truth - planned));
+  JobLearning learning;
+  for (int i = 0; i < 50; ++i) learning.learn(dig, {share, 0.0, std::exp(planned)}, report);
+  EXPECT_NEAR(learning.strength.mean, truth, 0.05);
+  EXPECT_NEAR(learning.foretell(dig, {share, 0.0, std::exp(planned)}).energy, *report.joint_work,
+              2e3);
+}
+
+/// Digs that come as far from what was foretold as the layer under them errs by so much.
+TEST(JobLearning, IntervalsHoldNineteenOfTwentyDigsThinOnesToo) {
+  for (const double layer_sd : {0.006, 0.02}) {
+    Random random(7, 0, 0);
+    JobLearning learning;
+    int held = 0, count = 0;
+    for (int i = 0; i < 600; ++i) {
+      PlannedDig dig;
+      dig.payload_mass = i % 2 == 0 ? 350.0 : 60.0;
+      dig.fill = dig.payload_mass / 500.0;
+      dig.energy = 5e4;
+      dig.cycle_energy = 1.2e5;
+      const DigSigns signs = {0.0, 0.0, 1.0, 3000.0};
+      const ForetoldStep foretold = learning.foretell(dig, signs);
+      StepReport report;
+      report.payload_mass = std::max(0.0, dig.payload_mass * (1.0 + 0.05 * random.normal()) +
+                                              signs.layer * layer_sd * random.normal());
+      report.joint_work = dig.cycle_energy * (1.0 + 0.1 * random.normal());
+      const auto& [low, high] = foretold.payload_interval;
+      if (i > 60) {
+        ++count;
+        held += *report.payload_mass >= low && *report.payload_mass <= high;
+      }
+      learning.learn(dig, signs, report);
+    }
+    EXPECT_GE(held, 0.9 * count) << layer_sd;
+    EXPECT_LE(held, 0.98 * count) << layer_sd;
+  }
+}
+
+TEST(JobMap, ACableThatIsNarrowerThanACellIsNotTouched) {
+  HandMadeJob job;
+  job.settings.design.keep_out = {{"cable", box(5.06, -3.0, 5.08, 3.0), 0.3}};
+  job.settings.design.obstacles = {{"pole", box(2.06, -1.59, 2.08, -1.57), 8.0}};
+  const JobMap map = job.map();
+  for (const double y : {-2.99, -0.3, 0.02, 0.48, 2.99}) {
+    const auto cell = cell_at(map.target, 5.07, y);
+    EXPECT_NEAR(map.forbidden(cell->row, cell->col), -0.3, 1e-9) << y;
+  }
+  const auto pole = cell_at(map.target, 2.07, -1.58);
+  EXPECT_TRUE(map.untouched(pole->row, pole->col));
+  job.settings.design.keep_out = {{"bed", box(5.0, -3.0, 5.2, 3.0), std::nullopt}};
+  const JobMap beside = job.map();
+  for (const auto& [x, is_in] :
+       {std::pair(4.97, false), {5.03, true}, {5.17, true}, {5.23, false}}) {
+    const auto cell = cell_at(beside.target, x, 0.0);
+    EXPECT_EQ(beside.untouched(cell->row, cell->col), is_in) << x;
+  }
+}
+
+TEST(DesignWarnings, TellWhatCannotBeDoneAsAskedFor) {
+  HandMadeJob job;
+  const auto codes = [&] {
+    std::set<WarningCode> found;
+    for (const Warning& each : design_warnings(job.settings.design, job.settings.surface,
+                                               job.ground.bank, job.settings.site.machine)) {
+      EXPECT_TRUE(each.ends_trust);
+      found.insert(each.code);
+    }
+    return found;
+  };
+  EXPECT_TRUE(codes().empty());
+  job.settings.design.tolerance = 0.3;
+  EXPECT_EQ(codes(), std::set{WarningCode::wide_tolerance});
+  job.settings.design.tolerance = 0.03;
+  job.settings.design.dump_areas.push_back({DumpArea::Kind::heap, box(4.0, -2.0, 6.0, 2.0)});
+  EXPECT_EQ(codes(), std::set{WarningCode::dump_on_design});
+  job.settings.design.dump_areas.pop_back();
+  DesignWords words;
+  words.length = 10.0;
+  words.floor_width = 1.0;
+  words.depth = 6.0;
+  job.settings.surface = design_of_words(words, job.ground.bank);
+  EXPECT_EQ(codes(), std::set{WarningCode::design_out_of_reach});
+  words.depth = 0.5;
+  words.from.x() = 13.0;
+  job.settings.surface = design_of_words(words, job.ground.bank);
+  EXPECT_EQ(codes(), std::set{WarningCode::design_beyond_scan});
+  job.settings.surface.shape = flat_ground({0.0, -3.0, 4.0, 1.0}, 0.05, -0.5);
+  std::get<HeightMap>(job.settings.surface.shape).z.leftCols(40).setConstant(0.4);
+  EXPECT_TRUE(codes().empty());  // it only cuts
+  job.settings.surface.cuts_only = false;
+  EXPECT_EQ(codes(), std::set{WarningCode::design_above_ground});
+}
+
 TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   const TemporaryFolder folder;
   JobRecord record;
+  record.signs = {0.4, 1.7, 0.8, 2900.0};
+  record.learning.layer_variance = 3e-5;
+  record.learning.cycle_variance = 0.02;
   record.barren = {{0.12, 5.4}, {-0.12, 4.6, 0.3}};
   record.bench = 2;
   record.passes_here = 3;
@@ -1381,6 +1489,11 @@ TEST(JobRecord, ComesBackWithAllThatItRemembers) {
   EXPECT_EQ(read.barren[1].lane, -0.12);
   EXPECT_EQ(read.barren[1].along, 4.6);
   EXPECT_EQ(read.barren[1].turned, 0.3);
+  EXPECT_EQ(read.signs.strength, 0.8);
+  EXPECT_EQ(read.signs.layer, 2900.0);
+  EXPECT_EQ(read.learning.layer_variance, 3e-5);
+  EXPECT_EQ(read.learning.cycle_variance, 0.02);
+  EXPECT_EQ(read.learning.datum.scans, 1);
   EXPECT_EQ(read.bench, 2);
   EXPECT_EQ(read.passes_here, 3);
   ASSERT_TRUE(read.carried.has_value());

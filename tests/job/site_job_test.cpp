@@ -132,7 +132,7 @@ TEST(SiteJob, AScanThatIsRefusedChangesNothing) {
   } while (!of.report.scan);
   const StepReport twice = of.report;
   const JobStep step = job.next();
-  ASSERT_EQ(step.what, JobAction::dig);
+  ASSERT_TRUE(step.digs());
   const std::string record = of.record();
   const double left = job.progress().left_volume;
   EXPECT_NE(error_of([&] { job.done(step.id, twice); }).find("already"), std::string::npos);
@@ -291,15 +291,97 @@ TEST(SiteJob, AJobWhoseSiteIsGoneIsRefused) {
 
 TEST(SiteJob, AJobWithTheMostThatIsBelievedCanBeReadAgain) {
   BegunJob begun(1);
+  const JobStep dig = begun.job.next();
+  ASSERT_EQ(dig.what, JobAction::dig);
   StepReport report;
-  report.payload_mass = 1e6;
-  report.joint_work = 1e12;
-  report.base = BasePose{1e9, -1e9, 1e9, 1e3};
-  ASSERT_EQ(begun.job.next().what, JobAction::dig);
-  begun.job.done(begun.job.next().id, report);
+  report.payload_mass = 2.9 * 2200.0 * heaped_capacity(begun.of.settings.site.machine);
+  report.joint_work = 19.0 * dig.predicted.energy;
+  report.base = BasePose{dig.base.x, dig.base.y + 9.9, 1e9, 1e3};
+  begun.job.done(dig.id, report);
   { const SiteJob ended = std::move(begun.job); }
   begun.job = begun.of.resume();
-  EXPECT_EQ(begun.job.progress().payload_mass, 1e6);
+  EXPECT_EQ(begun.job.progress().payload_mass, report.payload_mass);
+}
+
+TEST(SiteJob, ANumberInAnotherUnitIsRefusedAndNothingIsLearntOfIt) {
+  BegunJob begun(1);
+  const JobStep dig = begun.job.next();
+  const std::string before = begun.of.record();
+  const auto refusal = [&](const StepReport& report) {
+    const std::string text = error_of([&] { begun.job.done(dig.id, report); });
+    EXPECT_EQ(begun.of.record(), before);
+    return text;
+  };
+  StepReport report;
+  report.payload_mass = 310e3;  // g
+  EXPECT_NE(refusal(report).find("three buckets hold: is it in kg?"), std::string::npos);
+  report.payload_mass.reset();
+  for (const double factor : {1e3, 1e-3}) {
+    report.joint_work = factor * dig.predicted.energy;
+    EXPECT_NE(refusal(report).find("kJ are foretold: is it in kJ?"), std::string::npos) << factor;
+  }
+  report.joint_work.reset();
+  report.base = BasePose{dig.base.x + 100.0, dig.base.y, 0.0, 0.0};
+  EXPECT_NE(refusal(report).find("its distance from where the step has it [m] is 100"),
+            std::string::npos);
+}
+
+/// As if a process was killed in the second of two scans: of the ground before the first nothing is
+/// left.
+TEST(SiteJob, WhatCannotBeTakenBackAnyMoreIsNot) {
+  BegunJob begun;
+  const auto look = [&](double later) {
+    begun.job.look(begun.of.truth.scan(), begun.of.truth.time() + later);
+  };
+  look(1.0);
+  const std::string record = begun.of.record();
+  const std::string earlier = content_of(begun.of.path() + "/job-before.json");
+  look(2.0);
+  { const SiteJob ended = std::move(begun.job); }
+  std::ofstream(begun.of.path() + "/job.json", std::ios::binary) << record;
+  std::ofstream(begun.of.path() + "/job-before.json", std::ios::binary) << earlier;
+  begun.job = begun.of.resume();
+  EXPECT_NE(error_of([&] { begun.job.undo(); }).find("no step to take back"), std::string::npos);
+  EXPECT_EQ(begun.of.record(), record);
+  { const SiteJob ended = std::move(begun.job); }
+  begun.job = begun.of.resume();
+  EXPECT_EQ(begun.job.progress().scans, 1);
+}
+
+TEST(SiteJob, TheScansOfItsSiteAreItsOwn) {
+  const BegunJob begun;
+  EXPECT_NE(error_of([&] { Site(begun.of.path(), begun.of.settings.site, SiteAccess::write); },
+                     ErrorKind::bad_file)
+                .find("holds a job"),
+            std::string::npos);
+  EXPECT_EQ(Site(begun.of.path(), begun.of.settings.site).updates(), 1);
+}
+
+/// As if a process was killed between the first scan and the record of its job.
+TEST(SiteJob, BeginsOnAScanThatItsSiteHolds) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  { const SiteJob begun = of.begin(); }
+  std::filesystem::remove(of.path() + "/job.json");
+  const SiteJob again = of.begin();
+  EXPECT_EQ(Site(of.path(), of.settings.site).updates(), 1);
+  EXPECT_GT(again.progress().left_volume, 0.0);
+}
+
+TEST(SiteJob, ADesignThatLeavesTheScanIsNeverFinished) {
+  const ShortTrench site;
+  TrenchJob of{site};
+  EXPECT_TRUE(of.begin().design_warnings().empty());
+  TrenchJob longer{site};
+  longer.settings.design.words->length += 10.0;
+  longer.settings.surface =
+      design_of_words(*longer.settings.design.words, longer.hidden.ground.bank);
+  const SiteJob job = longer.begin();
+  const auto warnings = job.design_warnings();
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_EQ(warnings.front().code, WarningCode::design_beyond_scan);
+  EXPECT_TRUE(warnings.front().ends_trust);
+  EXPECT_LT(job.progress().seen, 0.9);
 }
 
 TEST(SiteJob, WhereTheMachineStandsIsTakenOfAnyStep) {

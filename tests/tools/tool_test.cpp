@@ -350,7 +350,8 @@ TEST(ShippedFiles, AreFoundByNameAndFilesByPath) {
   EXPECT_EQ(soil_named("loam").name, "loam");
   EXPECT_EQ(shipped_or_file("soils", "./my.json"), "./my.json");
   EXPECT_EQ(error_of([] { shipped_or_file("soils", "lom"); }),
-            "'lom' is neither a file nor one of the soils that excavplan ships");
+            "'lom' is neither a file nor one of the soils that excavplan ships: clay, gravel, "
+            "loam, sand");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <system_error>
 
 #include "base/files.hpp"
@@ -29,9 +30,25 @@ std::string place_of(const fs::path& name) {
   return error ? std::string() : (folder / path.filename()).string();
 }
 
-/// The files that a text names: it is one, a list of some, or FILE:PLACE.
+/// What a folder of a site, a job or a plain site holds of it.
+std::vector<std::string> kept_in(const std::string& folder) {
+  static const std::regex form(
+      "(site|job|order|design|scan)[-.0-9].*|(job|order)-[a-z].*|(ground|first|belief)-[0-9]+[.]."
+      "*");
+  std::vector<std::string> places;
+  std::error_code error;
+  for (const fs::directory_entry& each : fs::directory_iterator(folder, error)) {
+    if (std::regex_match(each.path().filename().string(), form))
+      places.push_back(place_of(each.path()));
+  }
+  return places;
+}
+
+/// The files that a text names: it is one, a list of some, FILE:PLACE, or a folder with some.
 std::vector<std::string> places_of(const UsedFile& file) {
   if (file.output) return {place_of(file.text)};
+  std::error_code none;
+  if (fs::is_directory(file.text, none)) return kept_in(file.text);
   std::vector<std::string> names = split(file.text, ',');
   names.push_back(file.text);
   names.push_back(file.text.substr(0, file.text.find(':')));

@@ -8,7 +8,6 @@
 #include <excavplan/job/job_motion.hpp>
 #include <excavplan/job/site_job.hpp>
 #include <excavplan/logs/dig_log.hpp>
-#include <excavplan/site/site.hpp>
 #include <excavplan/watch/job_view.hpp>
 
 #include "base/files.hpp"
@@ -19,6 +18,7 @@
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
+#include "site/site_folder.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -28,12 +28,6 @@ constexpr int finished_code = 10, stuck_code = 11;
 SiteJob job_in(const std::string& folder) { return SiteJob::resume(folder, load_order(folder)); }
 
 bool holds_job(const std::string& folder) { return std::filesystem::exists(folder + "/job.json"); }
-
-/// Of a job that was ordered and, as its process was killed, not begun.
-void forget_scan(const std::string& folder, const JobSettings& settings) {
-  excavplan::Site site(folder, settings.site, SiteAccess::write);
-  if (!site.is_empty()) site.undo();
-}
 
 void add_progress(const JobProgress& progress, Outcome& outcome) {
   outcome.json["progress"] = progress_json(progress);
@@ -54,20 +48,21 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   OrderInputs told = inputs.order;
   told.base = inputs.base;
   const Order order = order_of(told, inputs.scan);
+  require_job_settings(order.settings);
+  const SiteFolder ordering(inputs.folder, true, "order.lock");
   if (holds_job(inputs.folder)) {
     usage_error(inputs.folder + ": holds a job already: go on with it, or take another folder");
   }
   console.progress(0.0, "reading the scan");
-  const bool was_begun = std::filesystem::exists(inputs.folder + "/order.json");
   save_order(inputs.folder, order.settings, order.files);
   const JobSettings kept = load_order(inputs.folder);
-  if (was_begun) forget_scan(inputs.folder, kept);
   const SiteJob job = SiteJob::begin(inputs.folder, kept, order.first.scan, order.first.time);
   Outcome outcome;
   outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
   add_scan(order.first.report, job, outcome);
   add_progress(job.progress(), outcome);
-  for (const Warning& each : job.wall_warnings()) outcome.warnings.push_back(each);
+  for (const auto& warnings : {job.design_warnings(), job.wall_warnings()})
+    outcome.warnings.insert(outcome.warnings.end(), warnings.begin(), warnings.end());
   outcome.json["trustworthy"] = true;  // unless a warning ends it
   for (const std::string& note : order.settings.surface.notes) console.note("design: " + note);
   return outcome;
@@ -85,7 +80,7 @@ void add_motion(const std::string& folder, const SiteJob& job, JobStep& step, Ou
   } else {
     const Trajectory& timed = std::get<Trajectory>(motion);
     const std::string file = folder + "/motion-" + std::to_string(step.id) + ".csv";
-    write_file(file, to_csv(timed));
+    write_own_file(file, to_csv(timed));
     outcome.json["trajectory"] = file;
   }
   for (const Warning& each : step.warnings) {
@@ -144,13 +139,13 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
   std::optional<TimedScan> scan;
   if (inputs.scan.scan) scan = scan_of(inputs.scan);
   StepReport report = report_of(inputs, scan);
-  const JobStep present = job.next();
+  const JobStep present = job.present() ? *job.present() : JobStep();
   if (inputs.base) {
     report.base = parse_base(*inputs.base);
     report.base->z = present.base.z;
   }
   Outcome outcome;
-  const bool is_present = present.id == *inputs.step;
+  const bool is_present = present.id == *inputs.step && present.what != JobAction::stop;
   outcome.json = {{"step", *inputs.step}, {"taken", is_present}};
   if (is_present && present.what == JobAction::scan && !report.scan) {
     usage_error("--scan is missing: step " + std::to_string(present.id) + " is a scan");
@@ -159,9 +154,12 @@ Outcome work_done(const JobInputs& inputs, Console& /*console*/) {
     job.done(present.id, report);
     if (scan) add_scan(scan->report, job, outcome);
   } else {
-    outcome.lines.push_back("step         " + std::to_string(*inputs.step) +
-                            " is not the present one, " + std::to_string(present.id) +
-                            ": nothing is changed");
+    const std::string what = "step         " + std::to_string(*inputs.step);
+    const bool is_end = present.what == JobAction::stop && present.id == *inputs.step;
+    const std::string which = present.id == 0 ? "" : ", which is " + std::to_string(present.id);
+    outcome.lines.push_back(
+        what + (is_end ? " is the end of the job" : " is not the present one" + which) +
+        ": nothing is changed");
   }
   add_progress(job.progress(), outcome);
   return outcome;

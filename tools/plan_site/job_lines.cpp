@@ -11,15 +11,14 @@
 namespace excavplan::tools {
 namespace {
 
-std::string place_text(const BasePose& base) {
-  return "x = " + readable(base.x) + " m, y = " + readable(base.y) + " m, heading " +
-         readable(base.heading) + " rad";
+/// To the centimetre, however far the origin is.
+std::string place_text(double x, double y) {
+  return "x = " + decimals(x, 2) + " m, y = " + decimals(y, 2) + " m";
 }
 
 std::string dump_text(const JobStep& step) {
   if (step.keeps_load) return "none: the bucket keeps its load";
-  return "x = " + readable(step.dump.x()) + " m, y = " + readable(step.dump.y()) +
-         " m, z = " + readable(step.dump.z()) + " m" +
+  return place_text(step.dump.x(), step.dump.y()) + ", z = " + decimals(step.dump.z(), 2) + " m" +
          (step.truck ? ", truck " + std::to_string(*step.truck) : "");
 }
 
@@ -87,10 +86,11 @@ std::vector<std::string> step_lines(const JobStep& step) {
                                     name(step.what) +
                                     (step.reason.empty() ? "" : ": " + step.reason)};
   lines.push_back((step.what == JobAction::move ? "go to        " : "machine at   ") +
-                  place_text(step.base));
+                  place_text(step.base.x, step.base.y) + ", heading " +
+                  decimals(step.base.heading, 3) + " rad");
   if (step.dumps_first)
-    lines.push_back("dump first   what passes left in the bucket, at x = " +
-                    readable(step.dump.x()) + " m, y = " + readable(step.dump.y()) + " m");
+    lines.push_back("dump first   what passes left in the bucket, at " +
+                    place_text(step.dump.x(), step.dump.y()));
   if (step.path.poses.empty()) return lines;
   const ForetoldStep& foretold = step.predicted;
   lines.push_back("path         " + path_text(step.path.parameters, step.path.start_x) + ", lane " +
@@ -102,7 +102,9 @@ std::vector<std::string> step_lines(const JobStep& step) {
 }
 
 std::vector<std::string> progress_lines(const JobProgress& progress) {
-  const auto millimetres = [](double length) { return readable(1000.0 * length) + " mm"; };
+  const auto millimetres = [](double length) {
+    return std::isnan(length) ? "not seen" : readable(1000.0 * length) + " mm";
+  };
   return {"left         " + readable(progress.left_volume) + " of " +
               readable(progress.design_volume) + " m3, " + readable(100.0 * progress.seen) +
               " % seen" + (progress.is_finished ? ", finished" : ""),

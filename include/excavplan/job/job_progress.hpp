@@ -8,7 +8,7 @@ namespace excavplan {
 struct JobProgress {
   double design_volume = 0.0;  ///< to be taken out when the job began [m^3]
   double left_volume = 0.0;    ///< still above the design [m^3]
-  double rms = 0.0;            ///< of the deviation where it counts [m]
+  double rms = 0.0;            ///< of the deviation where it counts, NaN where none is seen [m]
   double p95 = 0.0;            ///< of its absolute value [m]
   double beyond_twice = 0.0;   ///< share of what counts beyond twice the tolerance [-]
   double seen = 0.0;           ///< share of the design that was seen [-]

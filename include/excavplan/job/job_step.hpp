@@ -94,6 +94,12 @@ struct StepReport {
 /// or a stall is of a step that does not dig
 void require_report(const JobStep& step, const StepReport& report);
 
+/// What no such machine can have done in that step, mostly as a number has another unit.
+/// @throws Error (bad_input) naming number, value and rule, if a payload is more than three buckets
+/// (ours), work of the joints is 20 times what was foretold, or a fiftieth of it though the dig did
+/// not stall, or the machine stands 10 m from where the step has it
+void require_plausible(const JobStep& step, const StepReport& report, const Machine& machine);
+
 /// Who decides the steps: SiteJob, or another policy that is to be compared with it.
 class JobPlanner {
  public:

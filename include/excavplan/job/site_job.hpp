@@ -63,6 +63,10 @@ class SiteJob : public JobPlanner {
   /// has it among its warnings, with the load of the tracks.
   std::vector<Warning> wall_warnings() const;
 
+  /// What of the design cannot be done or is not asked for rightly: design_above_ground,
+  /// design_beyond_scan, design_out_of_reach, dump_on_design, wide_tolerance.
+  std::vector<Warning> design_warnings() const;
+
   /// How far the job is, by the ground as it is expected.
   JobProgress progress() const;
   /// What was done so far, with the ground as expected after each step.

@@ -41,6 +41,9 @@ LinkPositions link_positions(const Machine& machine, const JointAngles& joints);
 /// Tip and floor angle for these joint angles.
 BucketPose forward_kinematics(const Machine& machine, const JointAngles& joints);
 
+/// How deep below z = 0 the tip comes within the limits of the joints [m].
+double digging_depth(const Machine& machine);
+
 /// Why a pose cannot be reached.
 struct Unreachable {
   /// Distance of the bucket pin from the boom pin, or a joint angle.

@@ -19,9 +19,12 @@ namespace excavplan {
 
 /// Whether a site is to be changed.
 enum class SiteAccess {
-  read,   ///< as it is when it is opened; needs no lock
-  write,  ///< by this process alone, until the object ends
+  read,    ///< as it is when it is opened; needs no lock
+  write,   ///< by this process alone, until the object ends
+  of_job,  ///< likewise, by the job that the folder holds or will hold
 };
+/// The file by which a folder holds a job, which alone takes in the scans of its site.
+inline constexpr const char* job_file = "job.json";
 
 /// The ground as best known over all scans and digs, and the density that is believed in. Every
 /// change is stored in the folder at once: whole or, if the process is killed, not at all.
@@ -29,8 +32,9 @@ class Site {
  public:
   /// Opens the site of a folder. For SiteAccess::write the folder is made if it is not there and a
   /// site begins with the first update.
-  /// @throws Error (bad_file) if the folder holds no site, another process changes it or a file is
-  /// damaged; (bad_input) if its soil, machine, law or cell are not those of `settings`
+  /// @throws Error (bad_file) if the folder holds no site, another process changes it, it is to be
+  /// written though it holds a job, or a file is damaged; (bad_input) if its soil, machine, law or
+  /// cell are not those of `settings`
   Site(const std::string& folder, SiteSettings settings, SiteAccess access = SiteAccess::read);
   ~Site();
   Site(Site&&) noexcept;             ///< the other may only be destroyed then
@@ -48,11 +52,13 @@ class Site {
   /// updates the last is
   void undo();
 
-  bool is_empty() const;                 ///< no scan was taken in
-  long long updates() const;             ///< scans taken in, less those undone
-  long long digs() const;                ///< those that gave a density
-  double cell_size() const;              ///< [m]
-  const SiteSettings& settings() const;  ///< with which it was opened
+  bool is_empty() const;                  ///< no scan was taken in
+  bool was_last(const Scan& scan) const;  ///< whether its latest update is of that scan
+  bool can_undo() const;                  ///< whether undo() has an update to take back
+  long long updates() const;              ///< scans taken in, less those undone
+  long long digs() const;                 ///< those that gave a density
+  double cell_size() const;               ///< [m]
+  const SiteSettings& settings() const;   ///< with which it was opened
   const GroundState& ground() const;  ///< in the site's frame. @throws Error (bad_input) if empty
 
   const DensityBelief& belief() const;  ///< where in the site's frame which density is believed in

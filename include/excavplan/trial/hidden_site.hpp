@@ -78,9 +78,10 @@ struct HiddenSite {
 /// Edge of the cells of the truth; ours [m].
 inline constexpr double truth_cell = 0.025;
 
-/// Reads the description of a plain site, its design and the soil that it names.
+/// Reads the description of a plain site, its design and the soil that it names: site.json, or the
+/// folder with it.
 /// @throws Error (bad_file) naming file, key, value and rule
-SiteBrief read_site_brief(const std::string& path);
+SiteBrief read_site_brief(const std::string& file_or_folder);
 /// The job of a site, by a machine and a law.
 JobSettings settings_of(const SiteBrief& site, const Machine& machine, const DensityLaw& law);
 
