@@ -7,6 +7,7 @@
 #include <set>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 #include "base/check.hpp"
 #include "base/statistics.hpp"
@@ -155,6 +156,14 @@ std::vector<std::string> differences(const Machine& machine, const SoilKind& soi
   if (job.shape.width < narrow * bucket) {
     found.push_back("its mean width is " + readable(job.shape.width, 3) +
                     " m, less than that of the bucket, " + readable(bucket, 3) + " m");
+  }
+  if (const double reach = digging_depth(machine); job.shape.depth > reach) {
+    found.push_back("its mean depth is " + readable(job.shape.depth, 3) +
+                    " m, deeper than the machine digs, " + readable(reach, 3) + " m");
+  }
+  if (const double load = loose_mass(soil, heaped_capacity(machine)); job.truck_mass < load) {
+    found.push_back("a truck takes " + readable(job.truck_mass, 3) +
+                    " kg, less than one bucket of loose soil, " + readable(load, 3) + " kg");
   }
   compare("length", job.shape.length, played.length);
   compare("mean width", job.shape.width, played.width);

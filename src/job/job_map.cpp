@@ -280,8 +280,7 @@ JobProgress measured(JobProgress progress, const JobMap& map, const MeasuredGrou
     if (!map.counts(at.row, at.col)) return;
     errors.push_back(std::abs(error));
     squares += error * error;
-    auto around = above_design_around(map, now.terrain, at);
-    if (std::abs(median(around)) > 2.0 * tolerance) ++beyond;
+    if (std::abs(error) > 2.0 * tolerance) ++beyond;
   });
   progress.seen = cells > 0 ? seen / (cells + map.beyond) : 0.0;
   progress.rms = progress.p95 = progress.beyond_twice = std::nan("");

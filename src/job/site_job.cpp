@@ -76,6 +76,8 @@ constexpr double most_off_shape = 0.042;     // share of cells that may stay so,
 constexpr double heap_share = 1.6;           // likewise of cells of which hardly any may stay so
 constexpr double most_heaps = 0.006;         // share of these
 constexpr double surely_in_shape = 0.9;      // share of what is allowed, of a wide design
+constexpr double nearly_sure = 0.94;         // likewise of others
+constexpr double surely_within = 0.6;        // likewise of what lies beyond twice the tolerance
 constexpr int most_not_taken = 3;            // scans in succession, before the job ends
 constexpr double well_seen = 0.9905;         // of it, so that no more is looked for
 constexpr int most_blocked = 4;   // digs from one place whose way is blocked, before it is left
@@ -269,7 +271,8 @@ struct SiteJob::State {
   }
   /// So that passes from other places are not worth their moves.
   bool is_shaped(const JobProgress& now) const {
-    return has_shape(now, stations.front().is_wide ? surely_in_shape : 1.0);
+    return has_shape(now, stations.front().is_wide ? surely_in_shape : nearly_sure) &&
+           now.beyond_twice <= surely_within * most_beyond_twice;
   }
   BasePose base_of(const JobStation& station) const;
   bool stands_well() const;
@@ -973,6 +976,7 @@ void SiteJob::State::end_step(const StepReport& report) {
     if (!report.base) record.base = step.base;
     record.off_place = std::hypot(record.base.x - step.base.x, record.base.y - step.base.y);
     record.has_arrived = true;
+    record.carried.reset();
     record.learning.move();
     ++record.progress.moves;
   }

@@ -27,6 +27,7 @@
 #include "planning/simulated_dig.hpp"
 #include "planning/start_rule.hpp"
 #include "simulation/checked_dig.hpp"
+#include "soil/density_doubt.hpp"
 
 namespace excavplan {
 namespace {
@@ -61,12 +62,9 @@ void warn(DigPlan& plan, Warning warning) {
 
 void judge_density(const Task& task, DigPlan& plan) {
   const std::string& soil = task.density.soil;
-  if (task.density.percent > 0.0 && task.density.percent < 1.0 && task.density.sd_percent < 1.0) {
-    warn(plan,
-         {WarningCode::density_as_fraction, "the density is " + number_text(task.density.percent) +
-                                                " %: if that is a fraction, it is " +
-                                                number_text(100.0 * task.density.percent) + " %"});
-  }
+  if (const auto doubt = doubt_of_density(task.density.percent);
+      doubt && task.density.sd_percent < 1.0)
+    warn(plan, *doubt);
   if (!task.density.trustworthy) {
     warn(plan, {WarningCode::density_not_trustworthy,
                 "the density is not trustworthy, so the path may be wrong for the soil", true});

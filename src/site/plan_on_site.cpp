@@ -27,6 +27,16 @@ GroundDensity density_in_reach(const Site& site, const BasePose& base) {
                          usual_depth * dig_size(machine));
 }
 
+/// Whether any of what a dig may cut is known.
+bool shows_ground_ahead(const HeightMap& ground, const Machine& machine) {
+  bool is_known = false;
+  for_each_cell(ground.z, [&](Cell at) {
+    is_known |= std::abs(ground.y(at.row)) < 0.5 * machine.bucket.width_outside &&
+                std::isfinite(ground.z(at.row, at.col));
+  });
+  return is_known;
+}
+
 /// Of the strip that a dig cuts.
 GroundDensity density_under(const Site& site, const BasePose& base, const DigPlan& plan) {
   const Rectangle strip = swept_strip(site.settings().machine, plan.path);
@@ -57,10 +67,16 @@ SitePlan plan_on_site(const Site& site, const SitePlanOptions& options) {
   SitePlan planned;
   const bool is_told = !site.belief().digs().empty();  // by a dig, if only that it stalled
   const bool is_stated = !is_told && options.density;
-  planned.density = is_stated ? *options.density : density_in_reach(site, options.base);
   const double cell = options.plan.cell_size.value_or(usual_cell(of.machine));
   GroundState known;
   known.terrain = site.ground_for(options.base, planning_extent(of.machine), cell).terrain;
+  if (is_stated)
+    planned.density = *options.density;
+  else if (shows_ground_ahead(known.terrain.bank, of.machine))
+    planned.density = density_in_reach(site, options.base);
+  else
+    planned.density = {site.belief().settings().mean_percent,
+                       site.belief().settings().level_sd_percent};
   if (options.present) put_obstacles(*options.present, known.terrain);
   planned.ground = terrain_to_dig(known, of.soil, planned.density.percent);
   const auto plan = [&] {

@@ -47,7 +47,9 @@ TEST(JobShape, IsThatOfTheWords) {
   const JobShape upright = shape_on_level_ground(trench_of_size("10x0.7x1.2m"));
   EXPECT_NEAR(upright.volume.value, 10.0 * 0.7 * 1.2, 1e-6);
   EXPECT_NEAR(upright.depth, 1.2, 1e-6);
-  EXPECT_NEAR(upright.width * upright.length, 7.0, 1e-6);
+  EXPECT_NEAR(upright.length, 10.0, 1e-6);
+  EXPECT_NEAR(upright.width, 0.7, 1e-6);
+  EXPECT_NEAR(shape_on_level_ground(trench_of_size("3x3x1")).length, 3.0, 1e-6);
   EXPECT_EQ(upright.steep_share, 0.0);
 
   DesignWords words = trench_of_size("10x1x1");
@@ -139,6 +141,13 @@ TEST(JobEstimate, WhatWasNeverPlayedEndsTrust) {
   const JobEstimate gravel = found("gravel", trench("15x1x0.5", {95.0, 0.0}));
   EXPECT_EQ(gravel.unlike.size(), 2U);
   EXPECT_GT(gravel.digs.spread.unlike, deep.digs.spread.unlike);
+  const JobEstimate too_deep = found("loam", trench("15x1x8", {50.0, 0.0}));
+  ASSERT_EQ(too_deep.unlike.size(), 2U);
+  EXPECT_NE(too_deep.unlike[0].find("8.00 m, deeper than the machine digs, 5.5"), std::string::npos)
+      << too_deep.unlike[0];
+  JobOutline tonnes = trench("15x1x0.5", {50.0, 0.0});
+  tonnes.truck_mass = 15.0;
+  EXPECT_NE(found("loam", tonnes).unlike[0].find("less than one bucket"), std::string::npos);
 }
 
 /// A row of docs/generated/jobs.md.

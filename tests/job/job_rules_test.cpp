@@ -253,7 +253,7 @@ TEST(JobRules, FacesAreShapedBeforeWhatFallsOffThemIsDug) {
 JobStep after_last_place(double width, double above) {
   PitJob pit(width);
   pit.dig([&](double x, double y) {
-    const bool is_strip = x > 5.5 && x < 5.65 && y < 0.1 * width;
+    const bool is_strip = x > 5.5 && x < 5.6 && y < 0.1 * width;
     return -0.4 + (is_strip ? 1.3 : above) * tolerance;
   });
   EXPECT_EQ(pit.progress().p95 > 0.9 * tolerance, above > 0.9);

@@ -36,6 +36,10 @@ TEST(PlanOnSite, IsForTheStatedDensityUntilADigToldOne) {
   EXPECT_LT(second.density.sd_percent, 15.0);
   EXPECT_EQ(second.density.soil, "loam");
   EXPECT_GT(second.ground.loose.maxCoeff(), 0.1) << "the heap, beside or in the strip";
+  options.base.x = 40.0;  // off what any scan showed
+  const SitePlan elsewhere = plan_on_site(site, options);
+  EXPECT_FALSE(elsewhere.plan.dig);
+  EXPECT_FALSE(elsewhere.plan.reason.empty());
 }
 
 TEST(PlanOnSite, KeepsClearOfWhatStandsThereNow) {

@@ -14,6 +14,7 @@
 
 #include <excavplan/machine/trajectory.hpp>
 
+#include "site/site_folder.hpp"
 #include "support/http_client.hpp"
 #include "support/plain_site_folder.hpp"
 #include "support/report_page.hpp"
@@ -52,6 +53,15 @@ class PlanSite : public BadInput {
   const std::string windrow = "-1,1.5,7,1.5,7,5.5,-1,5.5";
   const std::string level = grid("scan0.asc", [](double, double) { return 0.0; });
 };
+
+/// Each file of a folder by its name.
+std::map<std::string, std::string> files_in(const std::string& path) {
+  std::map<std::string, std::string> files;
+  for (const auto& each : fs::directory_iterator(path)) {
+    files[each.path().filename().string()] = content_of(each.path().string());
+  }
+  return files;
+}
 
 TEST_F(PlanSite, OrderStepAndReport) {
   const json begun = answer("plan-site", order());
@@ -105,15 +115,6 @@ TEST_F(PlanSite, OrderStepAndReport) {
   EXPECT_EQ(content_of(job() + "/job.json"), record);
 }
 
-/// Each file of a folder by its name.
-std::map<std::string, std::string> files_in(const std::string& path) {
-  std::map<std::string, std::string> files;
-  for (const auto& each : fs::directory_iterator(path)) {
-    files[each.path().filename().string()] = content_of(each.path().string());
-  }
-  return files;
-}
-
 TEST_F(PlanSite, WhatOnlyLooksLeavesTheFolderAsItIs) {
   answer("plan-site", order());
   done(next(), {"--base", "-0.6,0,0"});
@@ -153,6 +154,42 @@ TEST_F(PlanSite, AScanWithoutAStepAndAJobThatEnds) {
     done(step);
   }
   ADD_FAILURE() << step;
+}
+
+TEST_F(PlanSite, AStepThatWasNotGivenIsNotDone) {
+  answer("plan-site", order());
+  const std::string record = content_of(job() + "/job.json");
+  EXPECT_EQ(done({{"step", 1}})["taken"], false);
+  EXPECT_EQ(content_of(job() + "/job.json"), record);
+}
+
+TEST_F(PlanSite, WhatAFolderHoldsOfAJobIsNoOutput) {
+  answer("plan-site", order());
+  const auto before = files_in(job());
+  for (const char* const file : {"job.json", "job-first-ground.tif", "order-design.ply"})
+    refused(2, "name the same file", "plan-site", {"show", job(), "--report", job() + '/' + file});
+  EXPECT_EQ(files_in(job()), before);
+  EXPECT_EQ(run_program("plan-site", {"show", job(), "--report", job() + "/page.html"}).code, 0);
+}
+
+TEST_F(PlanSite, OneProcessOrdersAtATime) {
+  const SiteFolder other(job(), true, "order.lock");
+  const ProgramResult result = run_program("plan-site", order());
+  EXPECT_EQ(result.code, 3);
+  EXPECT_TRUE(contains(result.err, "is in use by process")) << result.err;
+  EXPECT_FALSE(fs::exists(job() + "/order.json"));
+}
+
+TEST_F(PlanSite, AnOrderThatCannotBeDoneAsAskedForIsDoubted) {
+  Words deep = order();
+  *(std::find(deep.begin(), deep.end(), "--trench") + 1) = "2.5x1x7";
+  deep.push_back("--density");
+  deep.push_back("0.4");
+  const json begun = answer("plan-site", deep);
+  EXPECT_EQ(begun["trustworthy"], false);
+  const std::string warnings = begun["warnings"].dump();
+  EXPECT_TRUE(contains(warnings, "design_out_of_reach")) << warnings;
+  EXPECT_TRUE(contains(warnings, "density_as_fraction")) << warnings;
 }
 
 TEST_F(PlanSite, APlainSiteSaysAll) {

@@ -30,6 +30,11 @@ std::string place_of(const fs::path& name) {
   return error ? std::string() : (folder / path.filename()).string();
 }
 
+bool is_folder(const UsedFile& file) {
+  std::error_code none;
+  return fs::is_directory(file.text, none);
+}
+
 /// What a folder of a site, a job or a plain site holds of it.
 std::vector<std::string> kept_in(const std::string& folder) {
   static const std::regex form(
@@ -46,9 +51,8 @@ std::vector<std::string> kept_in(const std::string& folder) {
 
 /// The files that a text names: it is one, a list of some, FILE:PLACE, or a folder with some.
 std::vector<std::string> places_of(const UsedFile& file) {
+  if (is_folder(file)) return kept_in(file.text);
   if (file.output) return {place_of(file.text)};
-  std::error_code none;
-  if (fs::is_directory(file.text, none)) return kept_in(file.text);
   std::vector<std::string> names = split(file.text, ',');
   names.push_back(file.text);
   names.push_back(file.text.substr(0, file.text.find(':')));
@@ -78,7 +82,7 @@ void refuse_shared_files(const std::vector<UsedFile>& files) {
   std::vector<std::vector<std::string>> places(files.size());
   std::transform(files.begin(), files.end(), places.begin(), places_of);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!files[i].output) continue;
+    if (!files[i].output || is_folder(files[i])) continue;
     refuse_file_of_standard_output(files[i]);
     const std::string& place = places[i].front();
     for (std::size_t j = 0; j < files.size(); ++j) {

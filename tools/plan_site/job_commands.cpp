@@ -19,6 +19,7 @@
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
 #include "site/site_folder.hpp"
+#include "soil/density_doubt.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -61,6 +62,7 @@ Outcome work_new(const JobInputs& inputs, Console& console) {
   outcome.lines.push_back("job          " + inputs.folder + ", design '" + kept.surface.name + "'");
   add_scan(order.first.report, job, outcome);
   add_progress(job.progress(), outcome);
+  if (const auto doubt = doubt_of_density(kept.density_percent)) outcome.warnings.push_back(*doubt);
   for (const auto& warnings : {job.design_warnings(), job.wall_warnings()})
     outcome.warnings.insert(outcome.warnings.end(), warnings.begin(), warnings.end());
   outcome.json["trustworthy"] = true;  // unless a warning ends it
