@@ -24,9 +24,10 @@ namespace fs = std::filesystem;
 /// The file of the running program; empty if the system does not provide it.
 fs::path program_file() {
   std::error_code none;
-  const fs::path file = fs::read_symlink("/proc/self/exe", none);
+  fs::path file = fs::read_symlink("/proc/self/exe", none);
   if (!none) return file;
   // A root without /proc: as the program was called, the folder of PATH included.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address, as the kernel gives it
   const auto* const called = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
   return called == nullptr ? fs::path() : fs::canonical(called, none);
 }
