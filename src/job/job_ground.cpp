@@ -173,8 +173,8 @@ ScanNews JobGround::take_in(const SiteEvent& scanned) {
   SiteEvent event = scanned;
   const double shared = is_noisy() ? shared_height_sd(event.scan, *settings_.design.sensor) : 0.0;
   event.options.change.sensor_pattern_sd = shared;
-  const bool is_known = !site_.is_empty() && unseen_.empty() && scanned_.seen.size() == 0 &&
-                        site_.was_last(event.scan);
+  // A process that was killed left it.
+  const bool is_known = scanned_.seen.size() == 0 && site_.was_last(event.scan);
   SiteUpdate update;
   update.taken = is_known;
   if (!is_known) update = site_.update(event);
