@@ -146,6 +146,15 @@ foreach(file IN LISTS sources)
   endforeach()
 endforeach()
 
+# Shared libraries export what is demangled to excavplan::. The name of a function template begins with
+# a type instead.
+foreach(file IN LISTS sources)
+  file(STRINGS ${ROOT}/${file} lines REGEX "^template [a-z][A-Za-z0-9_:]* [a-z_]+(<.*>)?\\(")
+  foreach(line IN LISTS lines)
+    message(SEND_ERROR "${file}: a function template is instantiated for others: ${line}")
+  endforeach()
+endforeach()
+
 # No file and no environment variable makes excavplan start a program or load code (SECURITY.md); of
 # the options --simulator does, by plugin_simulator.cpp, and --simulator-command, by
 # child_process.cpp.

@@ -18,24 +18,26 @@ T at_rank(std::vector<T>& values, std::size_t rank) {
   return *place;
 }
 
-}  // namespace
-
 template <typename T>
-T median(std::vector<T>& values) {
+T upper_median(std::vector<T>& values) {
   return at_rank(values, values.size() / 2);
 }
-template double median(std::vector<double>&);
-template std::int64_t median(std::vector<std::int64_t>&);
 
 template <typename T>
-double mean_median(std::vector<T>& values) {
-  const auto upper = static_cast<double>(median(values));
+double mean_of_medians(std::vector<T>& values) {
+  const auto upper = static_cast<double>(upper_median(values));
   if (values.size() % 2 == 1) return upper;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   return 0.5 * (upper + static_cast<double>(*std::max_element(values.begin(), middle)));
 }
-template double mean_median(std::vector<double>&);
-template double mean_median(std::vector<float>&);
+
+}  // namespace
+
+double median(std::vector<double>& values) { return upper_median(values); }
+std::int64_t median(std::vector<std::int64_t>& values) { return upper_median(values); }
+
+double mean_median(std::vector<double>& values) { return mean_of_medians(values); }
+double mean_median(std::vector<float>& values) { return mean_of_medians(values); }
 
 double upper_quantile(std::vector<double>& values, double share) {
   const auto rank = static_cast<std::size_t>(share * static_cast<double>(values.size()));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 /// @file
@@ -9,15 +10,15 @@
 
 namespace excavplan {
 
-// ---- Order: reorders the values, at least one of double, float or std::int64_t ------------------
+// ---- Order: reorders the values, at least one ---------------------------------------------------
 
 /// The upper of the two in the middle where the count is even.
-template <typename T>
-T median(std::vector<T>& values);
+double median(std::vector<double>& values);
+std::int64_t median(std::vector<std::int64_t>& values);
 
 /// The mean of the two in the middle where the count is even.
-template <typename T>
-double mean_median(std::vector<T>& values);
+double mean_median(std::vector<double>& values);
+double mean_median(std::vector<float>& values);
 
 /// The one that this share of them, rounded down, lie below; the highest for all. The median for a
 /// half.
