@@ -16,6 +16,7 @@
 #include "base/check.hpp"
 #include "base/non_finite.hpp"
 #include "ground/map_check.hpp"
+#include "sensing/ray_target.hpp"
 
 namespace excavplan {
 namespace {
@@ -23,7 +24,6 @@ namespace {
 constexpr double edge_share = 0.02;  // ours: neighbours that differ by more lie across an edge [-]
 
 // Ours: beyond them no sensor is.
-constexpr double longest_range = 1e4;  // [m]
 constexpr double largest_error = 1e3;  // [m], [1/m]
 constexpr double farthest = 1e9;       // from the origin [m]
 
@@ -85,51 +85,6 @@ Eigen::Matrix3d site_from_camera(const DepthCamera& camera) {
   return axes;
 }
 
-/// Distance along the ray at which it first meets the surface; NaN if it does not.
-double hit(const HeightMap& surface, const Eigen::Vector3d& from, const Eigen::Vector3d& ray,
-           double range) {
-  const double step = 0.5 * surface.cell_size;
-  double last = nan;
-  double last_distance = 0.0;
-  for (double distance = 0.0; distance <= range; distance += step) {
-    const Eigen::Vector3d point = from + distance * ray;
-    const double above = point.z() - height_at(surface, point.x(), point.y());
-    if (above <= 0.0) {
-      if (!(last > 0.0)) return nan;  // unknown ground hides where it was met
-      return last_distance + (distance - last_distance) * last / (last - above);
-    }
-    last = above;
-    last_distance = distance;
-  }
-  return nan;
-}
-
-double highest(const HeightMap& surface) {
-  return surface.z.isNaN().select(-1e300, surface.z).maxCoeff();
-}
-
-/// How far along a ray the map lies, with a cell to spare: it is never met again behind its border.
-double way_over(const HeightMap& surface, const Eigen::Vector3d& from, const Eigen::Vector3d& ray) {
-  const Rectangle map = surface.extent();
-  const double x = (ray.x() > 0.0 ? map.x_max : map.x_min) - from.x();
-  const double y = (ray.y() > 0.0 ? map.y_max : map.y_min) - from.y();
-  constexpr double upright = 1e-12;  // leaves the map on no axis
-  const double along_x = std::abs(ray.x()) > upright ? x / ray.x() : longest_range;
-  const double along_y = std::abs(ray.y()) > upright ? y / ray.y() : longest_range;
-  const double slant = std::max(std::hypot(ray.x(), ray.y()), upright);
-  return std::min(along_x, along_y) + surface.cell_size / slant;
-}
-
-/// The same, skipping what lies above the top of the ground.
-double hit_from_above(const HeightMap& surface, double top, const Eigen::Vector3d& from,
-                      const Eigen::Vector3d& ray, double range) {
-  if (!(ray.z() < 0.0)) return nan;
-  // Nothing can be met before the ray is down at the highest point of the ground.
-  const double skipped = std::max(0.0, (top + surface.cell_size - from.z()) / ray.z());
-  const double left = std::min(range - skipped, way_over(surface, from + skipped * ray, ray));
-  return skipped + hit(surface, from + skipped * ray, ray, left);
-}
-
 /// The image plane of a camera: one ray (right, down, 1) per pixel.
 class ImagePlane {
  public:
@@ -152,13 +107,12 @@ class ImagePlane {
 Eigen::ArrayXXd depths(const HeightMap& surface, const DepthCamera& camera,
                        const Eigen::Matrix3d& axes) {
   const ImagePlane plane(camera);
-  const double top = highest(surface);
+  const RayTarget target(surface);
   Eigen::ArrayXXd depth(camera.height, camera.width);
   for (Eigen::Index u = 0; u < depth.cols(); ++u) {
     for (Eigen::Index v = 0; v < depth.rows(); ++v) {
       const Eigen::Vector3d pixel = plane.pixel(v, u);
-      depth(v, u) = hit_from_above(surface, top, camera.position, axes * pixel.normalized(),
-                                   camera.max_range) /
+      depth(v, u) = target.distance(camera.position, axes * pixel.normalized(), camera.max_range) /
                     pixel.norm();
     }
   }
@@ -276,22 +230,31 @@ Beam beam_at(double azimuth, double elevation) {
   return {direction, left, direction.cross(left)};
 }
 
-/// Range that a beam returns without noise; NaN if nothing is met.
-double mixed_range(const HeightMap& surface, double top, const Lidar& lidar, const Beam& beam) {
-  // Quadrature of a disc: its centre and six points at sqrt(2/3) of the radius.
-  constexpr int ring = 6;
-  constexpr double centre_weight = 0.25;
-  constexpr double ring_weight = 0.125;
+// Quadrature of a disc: six points at sqrt(2/3) of the radius and its centre.
+constexpr int ring = 6;
+constexpr double centre_weight = 0.25;
+constexpr double ring_weight = 0.125;
+
+/// How far its rays lie to the left of and above the middle of a beam, at a distance of 1.
+std::array<Eigen::Vector2d, ring + 1> rays_of_beam(double divergence) {
   constexpr double turn = 2.0 * pi;
-  const double radius = std::sqrt(2.0 / 3.0) * std::tan(0.5 * lidar.divergence);
-  std::array<double, ring + 1> range{};
+  const double radius = std::sqrt(2.0 / 3.0) * std::tan(0.5 * divergence);
+  std::array<Eigen::Vector2d, ring + 1> rays;
   for (int i = 0; i <= ring; ++i) {
     const double angle = turn * i / ring;
     const double off = i == ring ? 0.0 : radius;
-    const Eigen::Vector3d ray =
-        beam.direction + off * std::cos(angle) * beam.left + off * std::sin(angle) * beam.up;
-    range[static_cast<std::size_t>(i)] =
-        hit_from_above(surface, top, lidar.position, ray.normalized(), lidar.max_range);
+    rays[static_cast<std::size_t>(i)] = {off * std::cos(angle), off * std::sin(angle)};
+  }
+  return rays;
+}
+
+/// Range that a beam returns without noise; NaN if nothing is met.
+double mixed_range(const RayTarget& target, const Lidar& lidar, const Beam& beam,
+                   const std::array<Eigen::Vector2d, ring + 1>& rays) {
+  std::array<double, ring + 1> range{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Eigen::Vector3d ray = beam.direction + rays[i].x() * beam.left + rays[i].y() * beam.up;
+    range[i] = target.distance(lidar.position, ray.normalized(), lidar.max_range);
   }
   double nearest = std::numeric_limits<double>::infinity();
   for (const double r : range) nearest = r < nearest ? r : nearest;
@@ -354,7 +317,8 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const Lidar&
                                           std::uint64_t seed) {
   check(lidar);
   require_map(surface, "scan: surface");
-  const double top = highest(surface);
+  const RayTarget target(surface);
+  const auto rays = rays_of_beam(lidar.divergence);
   std::vector<Eigen::Vector3d> points;
   for (Eigen::Index row = 0; row < steps(lidar.elevation, lidar.angle_step(1)); ++row) {
     Random random(seed, static_cast<std::uint64_t>(row));
@@ -365,7 +329,7 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const Lidar&
       const double noise = random.normal();
       if (dropped) continue;
       const Beam beam = beam_at(azimuth, elevation);
-      const double range = mixed_range(surface, top, lidar, beam);
+      const double range = mixed_range(target, lidar, beam, rays);
       if (std::isnan(range)) continue;
       points.emplace_back(lidar.position + (range + lidar.range_noise * noise) * beam.direction);
     }
