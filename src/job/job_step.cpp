@@ -12,16 +12,16 @@ namespace excavplan {
 namespace {
 
 // The most that is believed of a report, and that a record holds of many; ours.
-constexpr double most_mass = 1e6;      // [kg]
-constexpr double most_work = 1e12;     // [J]
-constexpr double farthest_step = 1e9;  // from the origin of the site's frame [m]
-constexpr double most_turned = 1e3;    // [rad]
-constexpr double most_buckets = 3.0;   // in one
-constexpr double densest = 2200.0;     // of loose soil [kg/m^3]
-constexpr double most_of_work = 20.0;  // over what is foretold
-constexpr double least_work = 50.0;    // what is foretold over it
-constexpr double farthest_off = 10.0;  // from where it should stand [m]
-constexpr double latest_time = 1e11;   // as in a ground file [s]
+constexpr double most_mass = 1e6;            // [kg]
+constexpr double most_work = 1e12;           // [J]
+constexpr double farthest_step = 1e9;        // from the origin of the site's frame [m]
+constexpr double most_turned = 1e3;          // [rad]
+constexpr double most_buckets = 3.0;         // in one
+constexpr double densest = 2200.0;           // of loose soil [kg/m^3]
+constexpr double most_of_work = 20.0;        // over what is foretold
+constexpr double least_work = 50.0;          // what is foretold over it
+constexpr double farthest_from_step = 10.0;  // from where it should stand [m]
+constexpr double latest_time = 1e11;         // as in a ground file [s]
 
 }  // namespace
 
@@ -82,8 +82,8 @@ void require_plausible(const JobStep& step, const StepReport& report, const Mach
   }
   if (!report.base) return;
   const double off = std::hypot(report.base->x - step.base.x, report.base->y - step.base.y);
-  require(off <= farthest_off, "base" + of + ": its distance from where the step has it [m]", off,
-          "at most " + readable(farthest_off, 2));
+  require(off <= farthest_from_step, "base" + of + ": its distance from where the step has it [m]",
+          off, "at most " + readable(farthest_from_step, 2));
 }
 
 }  // namespace excavplan

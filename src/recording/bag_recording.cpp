@@ -12,7 +12,7 @@
 namespace excavplan {
 namespace {
 
-constexpr std::string_view bag_magic = "#ROSBAG V2.0\n";
+constexpr std::string_view bag_2_magic = "#ROSBAG V2.0\n";
 constexpr std::uint64_t longest_header = 1 << 16;  // of a chunk or a bag; ours [byte]
 
 constexpr std::size_t most_fields = 100;  // of a header; ours
@@ -143,8 +143,8 @@ class BagRecording : public ChunkedContainer {
 
 void BagRecording::require_version() const {
   const Bytes start =
-      file_.read(0, std::min<std::uint64_t>(file_.size(), bag_magic.size()), "magic");
-  if (start.view() != bag_magic) {
+      file_.read(0, std::min<std::uint64_t>(file_.size(), bag_2_magic.size()), "magic");
+  if (start.view() != bag_2_magic) {
     file_.fail(0, in_quotes(start.view()),
                "'#ROSBAG V2.0'; 'rosbag fix' converts bags of earlier versions");
   }
@@ -152,8 +152,8 @@ void BagRecording::require_version() const {
 
 /// @return false if the bag has none, as its recording was cut off
 bool BagRecording::read_index() {
-  const Bytes bytes = header_at(bag_magic.size());
-  const Fields fields(ByteReader({file_, bag_magic.size() + 4}, bytes.view()));
+  const Bytes bytes = header_at(bag_2_magic.size());
+  const Fields fields(ByteReader({file_, bag_2_magic.size() + 4}, bytes.view()));
   fields.require_op(Op::bag);
   if (fields.has("encryptor") && !fields.text("encryptor").empty()) {
     file_.refuse("is encrypted by " + in_quotes(fields.text("encryptor")) +
@@ -182,7 +182,7 @@ void BagRecording::read_records(std::uint64_t start, const Fields& bag) {
   const std::uint32_t connections = bag.u32("conn_count");
   const std::uint32_t chunks = bag.u32("chunk_count");
   if (file_.size() - start > most_index_bytes) {
-    file_.fail(bag_magic.size(), "an index at byte " + std::to_string(start),
+    file_.fail(bag_2_magic.size(), "an index at byte " + std::to_string(start),
                "one of at most " + std::to_string(most_index_bytes) + " bytes in the " +
                    std::to_string(file_.size()) + " of the file");
   }
@@ -200,7 +200,7 @@ void BagRecording::read_records(std::uint64_t start, const Fields& bag) {
 /// A bag without an index from front to back: chunks and what connects their messages with topics.
 /// The last record of one that was cut off is just not whole.
 void BagRecording::scan() {
-  for (std::uint64_t offset = bag_magic.size(); offset < file_.size();) {
+  for (std::uint64_t offset = bag_2_magic.size(); offset < file_.size();) {
     try {
       offset = scan_record(offset);
     } catch (const Unsupported&) {
@@ -307,7 +307,7 @@ void BagRecording::read_chunk_info(ByteReader& records, std::uint64_t end) {
   chunk.offset = fields.number("chunk_pos", 8);
   chunk.start = time_field(fields, "start_time");
   chunk.end = time_field(fields, "end_time");
-  if (chunk.offset < bag_magic.size() || chunk.offset >= end) {
+  if (chunk.offset < bag_2_magic.size() || chunk.offset >= end) {
     fields.fail("a chunk at byte " + std::to_string(chunk.offset),
                 "one before the index at byte " + std::to_string(end));
   }
