@@ -131,8 +131,7 @@ DigEfficiency measure_efficiency(const LoggedDig& dig) {
   result.warnings.insert(result.warnings.end(), lifted.warnings.begin(), lifted.warnings.end());
   if (auto warning = implausible(result)) result.warnings.push_back(std::move(*warning));
   result.warnings = causes_of(std::move(result.warnings));
-  result.trustworthy = std::none_of(result.warnings.begin(), result.warnings.end(),
-                                    [](const Warning& warning) { return warning.ends_trust; });
+  result.trustworthy = !any_ends_trust(result.warnings);
   return result;
 }
 

@@ -589,8 +589,7 @@ JobStep SiteJob::State::move_step(const JobStation& station) {
   JobStep step = step_of(JobAction::move);
   step.base = base_of(station);
   step.warnings = standing_warnings(settings, ground.expected(), step.base);
-  step.trustworthy = std::none_of(step.warnings.begin(), step.warnings.end(),
-                                  [](const Warning& each) { return each.ends_trust; });
+  step.trustworthy = !any_ends_trust(step.warnings);
   return step;
 }
 

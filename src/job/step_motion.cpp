@@ -38,8 +38,7 @@ StepMotion checked_motion(const JobSettings& settings, const Terrain& ground, co
   }
   const std::vector<Warning>& more = timed.warnings;
   checked.warnings.insert(checked.warnings.end(), more.begin(), more.end());
-  checked.is_trustworthy = std::none_of(checked.warnings.begin(), checked.warnings.end(),
-                                        [](const Warning& each) { return each.ends_trust; });
+  checked.is_trustworthy = !any_ends_trust(checked.warnings);
   return checked;
 }
 

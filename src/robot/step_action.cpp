@@ -119,9 +119,7 @@ void StepAction::go_on() {
     answer_.step = outcome->step.id;
     answer_.what = name(outcome->step.what);
     answer_.warnings.insert(answer_.warnings.end(), more.begin(), more.end());
-    const bool is_doubtful =
-        std::any_of(more.begin(), more.end(), [](const Warning& each) { return each.ends_trust; });
-    if (is_doubtful) answer_.trustworthy = false;
+    if (any_ends_trust(more)) answer_.trustworthy = false;
     end(StepEnd::succeeded);
   } catch (const std::exception& error) {
     end(StepEnd::aborted, std::string(error.what()) + ": the step is to be reported again");

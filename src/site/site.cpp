@@ -113,9 +113,8 @@ void judge(SiteUpdate& update, const std::string& folder) {
                                      ": the scan does not fit the ground of the site where "
                                      "that did not change: the site stays as it was");
   }
-  update.trustworthy = (!update.estimate || update.estimate->trustworthy) &&
-                       std::none_of(update.warnings.begin(), update.warnings.end(),
-                                    [](const Warning& warning) { return warning.ends_trust; });
+  update.trustworthy =
+      (!update.estimate || update.estimate->trustworthy) && !any_ends_trust(update.warnings);
 }
 
 }  // namespace

@@ -85,9 +85,7 @@ void add_motion(const std::string& folder, const SiteJob& job, JobStep& step, Ou
     write_own_file(file, to_csv(timed));
     outcome.json["trajectory"] = file;
   }
-  for (const Warning& each : step.warnings) {
-    if (each.ends_trust) step.trustworthy = false;
-  }
+  if (any_ends_trust(step.warnings)) step.trustworthy = false;
 }
 
 Outcome work_next(const JobInputs& inputs, Console& /*console*/) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <excavplan/base/warning_code.hpp>
 
@@ -22,5 +23,10 @@ struct Warning {
   std::string message;  ///< text: what was found, its value and its meaning
   bool ends_trust;      ///< true: a careful surveyor would not sign for the result
 };
+
+/// Whether one of them ends trust.
+bool any_ends_trust(const std::vector<Warning>& warnings);
+/// Those that do, in their order.
+std::vector<Warning> those_ending_trust(const std::vector<Warning>& warnings);
 
 }  // namespace excavplan
