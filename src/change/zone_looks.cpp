@@ -24,6 +24,7 @@ constexpr double berm_share = 0.6;           // of its cells that lie there
 double lasting_of(const Area& area, std::size_t tail, const std::vector<Cell>& cells) {
   const Eigen::ArrayXXd away = distance_to(area.ground.zone == area.parts.parent[tail]);
   std::vector<double> distances;
+  distances.reserve(cells.size());
   for (const Cell at : cells) distances.push_back(away(at.row, at.col));
   std::vector<double> sorted = distances;
   const double middle = median(sorted);

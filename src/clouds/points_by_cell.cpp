@@ -19,23 +19,18 @@ constexpr double largest_side = 4.0;      // ours
 
 /// An even random choice of the points of a cell as they stream by: one of each of `kept`
 /// stretches.
-class Choice {
- public:
-  Choice(std::size_t cell, std::size_t count, std::size_t kept)
-      : cell_(cell), count_(count), kept_(kept) {}
-
+struct Choice {
   /// Which point of the cell stretch `number` keeps.
   std::size_t operator()(std::size_t number) const {
-    if (kept_ == count_) return number;
-    const std::size_t first = number * count_ / kept_;
-    const std::size_t length = (number + 1) * count_ / kept_ - first;
-    return first + Random(cell_, number).index(length);
+    if (kept == count) return number;
+    const std::size_t first = number * count / kept;
+    const std::size_t length = (number + 1) * count / kept - first;
+    return first + Random(cell, number).index(length);
   }
 
- private:
-  std::size_t cell_;
-  std::size_t count_;
-  std::size_t kept_;
+  std::size_t cell;
+  std::size_t count;
+  std::size_t kept;
 };
 
 std::uint16_t within(double place) {
@@ -133,7 +128,7 @@ void PointsByCell::load(std::size_t band) {
   std::vector<Cursor> cursors(cells);
   const auto choose = [&](std::size_t i) {
     const std::uint32_t count = counts_[first + i];
-    const Choice choice(first + i, count, kept(first + i));
+    const Choice choice = {first + i, count, kept(first + i)};
     Cursor& cursor = cursors[i];
     cursor.until = cursor.place < begin_[i + 1]
                        ? count - static_cast<std::uint32_t>(choice(cursor.place - begin_[i]))

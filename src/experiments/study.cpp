@@ -225,7 +225,7 @@ void single_dig(const StudyTask& task, StudyRun& run) {
   ExperimentOptions options = task.options();
   bool surveyed = false;
   options.survey = [&, survey = options.survey](const DigScene& scene) {
-    const RelativeDensity estimate = survey(scene);
+    RelativeDensity estimate = survey(scene);
     set_estimate(run, estimate);
     surveyed = true;
     return estimate;

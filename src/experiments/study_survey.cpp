@@ -62,6 +62,7 @@ std::vector<Eigen::Vector2d> points_along(const DigPath& path) {
   const double drag = path.parameters.drag_length;
   const int cameras = std::max(1, static_cast<int>(std::ceil(drag / seen_by_one)));
   std::vector<Eigen::Vector2d> points;
+  points.reserve(static_cast<std::size_t>(cameras));
   for (int i = 0; i < cameras; ++i) {
     points.emplace_back(path.start_x - drag * (i + 0.5) / cameras, 0.0);
   }

@@ -14,6 +14,12 @@ const Style ground_before = {"#a08050", 0.8, "#f3ead9"};
 const Style ground_after = {"#4d3319", 1.1, "#d9c19a"};
 const Style soil_style = {"#4d3319", 0.7, "#b08a55"};
 
+/// A stretch of x.
+struct Along {
+  double from;
+  double to;
+};
+
 void grow(Rectangle& all, const Points& points) {
   for (const Eigen::Vector2d& point : points) {
     all.x_min = std::min(all.x_min, point.x());
@@ -24,8 +30,8 @@ void grow(Rectangle& all, const Points& points) {
 }
 
 /// Soil under a profile between two x, down to far below; unknown ground is left out.
-void draw_ground(Panel& panel, const GroundProfile& profile, double from, double to,
-                 const Style& style, const std::string& legend) {
+void draw_ground(Panel& panel, const Along& along, const GroundProfile& profile, const Style& style,
+                 const std::string& legend) {
   constexpr int samples = 1200;
   constexpr double depth = -50.0;  // below any view [m]
   Points surface;
@@ -40,7 +46,7 @@ void draw_ground(Panel& panel, const GroundProfile& profile, double from, double
     surface.clear();
   };
   for (int i = 0; i <= samples; ++i) {
-    const double x = from + (to - from) * i / samples;
+    const double x = along.from + (along.to - along.from) * i / samples;
     const double z = profile(x);
     if (std::isfinite(z)) {
       surface.emplace_back(x, z);
@@ -52,10 +58,10 @@ void draw_ground(Panel& panel, const GroundProfile& profile, double from, double
   panel.polygon({}, style, legend);
 }
 
-void draw_grounds(Panel& panel, const DugDig& dug, double from, double to) {
-  draw_ground(panel, dug.before, from, to, ground_before, "ground before");
+void draw_grounds(Panel& panel, const DugDig& dug, const Along& along) {
+  draw_ground(panel, along, dug.before, ground_before, "ground before");
   if (dug.after) {
-    draw_ground(panel, dug.after, from, to, ground_after, "ground after");
+    draw_ground(panel, along, dug.after, ground_after, "ground after");
   }
 }
 
@@ -172,7 +178,7 @@ Panel machine_panel(const DugDig& dug) {
   panel.view({all.x_min - room, all.y_min - 2.0 * room, all.x_max + room, all.y_max + room});
   panel.equal_aspect();
   draw_standing_place(panel, dug, all.x_min - 20.0, dug.path.start_x);
-  draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0);
+  draw_grounds(panel, dug, {all.x_min - 20.0, all.x_max + 20.0});
   draw_machine(panel, machine);
   draw_bucket(panel, dug, pose, {"#222222", 1.3});
   panel.dots(machine.pins, 1.1, {"#4a4a4a", 0.5, "#f2f2f2"});
@@ -199,7 +205,7 @@ Panel dig_panel(const DugDig& dug) {
   const double room = 0.06 * std::max(1.0, all.x_max - all.x_min);
   panel.view({all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + 2.5 * room});
   panel.equal_aspect();
-  draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0);
+  draw_grounds(panel, dug, {all.x_min - 20.0, all.x_max + 20.0});
   for (const std::size_t pose : ends) {
     Style wall = phase_style(dug.path.poses[pose].phase);
     wall.dash.clear();

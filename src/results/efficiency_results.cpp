@@ -26,7 +26,7 @@ const char* word_of(PhaseSource source) {
 
 /// A dig, or a cycle: the mean of those of the log.
 Json share_json(const DigEfficiency& run, const RunShare& share) {
-  const double count = static_cast<double>(run.digs);
+  const auto count = static_cast<double>(run.digs);
   const std::string cost = run.spent == Spent::fuel ? "fuel_ml" : "energy_kj";
   const auto efficiency = [&](const std::optional<double>& spent) {
     return spent && *spent > 0.0 ? Json(run.per(*spent).value) : Json();

@@ -58,6 +58,7 @@ bool counts(const std::vector<View>& views, std::size_t own, const HeightMap& ma
 Surface surface_of(const std::vector<Standpoint>& standpoints, const HeightMap& map,
                    const RasterOptions& options) {
   std::vector<View> views;
+  views.reserve(standpoints.size());
   for (const Standpoint& from : standpoints) views.push_back(view_from(from, map, options));
   const PointSource kept = [&](const PointVisitor& visit) {
     std::vector<Eigen::Vector3d> some;

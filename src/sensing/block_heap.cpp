@@ -71,7 +71,8 @@ std::vector<double> running_rise(const HeightMap& before, const HeightMap& after
 Eigen::Vector2d drawn_cell(const std::vector<double>& sums, Eigen::Index rows, Random& random) {
   const auto at = std::upper_bound(sums.begin(), sums.end(), sums.back() * random.uniform());
   const auto index = static_cast<Eigen::Index>(at - sums.begin());
-  return {static_cast<double>(index % rows), static_cast<double>(index / rows)};
+  const Eigen::Index row = index % rows, col = index / rows;
+  return {static_cast<double>(row), static_cast<double>(col)};
 }
 
 /// Between the surfaces, but for the border.

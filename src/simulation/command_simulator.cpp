@@ -185,8 +185,8 @@ class Programs {
 /// Digs by a program.
 class CommandSimulator : public SoilSimulator {
  public:
-  CommandSimulator(std::shared_ptr<Programs> programs, std::string name, const Machine& machine,
-                   const SoilKind& soil, double density_percent)
+  CommandSimulator(std::shared_ptr<Programs> programs, const std::string& name,
+                   const Machine& machine, const SoilKind& soil, double density_percent)
       : programs_(std::move(programs)),
         model_(machine, soil, density_percent),
         identity_(simulator_identity(name, machine, soil, density_percent)),

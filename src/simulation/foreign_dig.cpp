@@ -82,12 +82,12 @@ void book(const std::vector<ForeignLoad>& loads, const Machine& machine, const D
 
 }  // namespace
 
-ForeignModel::ForeignModel(const Machine& its_machine, const SoilKind& kind, double percent)
-    : machine(its_machine),
-      soil(kind),
+ForeignModel::ForeignModel(Machine of_machine, SoilKind of_soil, double percent)
+    : machine(std::move(of_machine)),
+      soil(std::move(of_soil)),
       density_percent(percent),
-      bank(bank_state(kind, percent)),
-      loose(loose_state(kind)) {
+      bank(bank_state(soil, percent)),
+      loose(loose_state(soil)) {
   require_machine(machine);
 }
 

@@ -21,7 +21,7 @@ namespace excavplan {
 /// What such a simulator digs with and in.
 struct ForeignModel {
   /// @throws Error (bad_input) as require_machine(), bank_state()
-  ForeignModel(const Machine& machine, const SoilKind& soil, double density_percent);
+  ForeignModel(Machine of_machine, SoilKind of_soil, double percent);
 
   Machine machine;
   SoilKind soil;

@@ -11,7 +11,7 @@ namespace {
 std::string cost_unit(const DigEfficiency& run) { return run.spent == Spent::fuel ? "mL" : "kJ"; }
 
 std::string share_line(const DigEfficiency& run, const char* name, const RunShare& share) {
-  const double count = static_cast<double>(run.digs);
+  const auto count = static_cast<double>(run.digs);
   const auto spent = [&](double cost) {
     return readable(cost / count) + " " + cost_unit(run) + ", " +
            (cost > 0.0 ? readable(run.per(cost).value) : "unknown") + " " + run.symbol();
@@ -58,7 +58,7 @@ std::vector<std::string> set_lines(const SetComparison& sets, const std::string&
   constexpr double level = 0.05;  // of an interval of 95 %
   const bool interval_shows = sets.gain_low_percent > 0.0 || sets.gain_high_percent < 0.0;
   if (interval_shows != (sets.p_value() < level)) {
-    lines.push_back(
+    lines.emplace_back(
         "the interval, which takes the scatter for normal, says otherwise than the permutation "
         "test, which does not and decides: more runs are needed");
   }

@@ -91,7 +91,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.experiment.machine);
   const ExperimentInputs& experiment = inputs.experiment;
   if (inputs.is_study()) {
-    return study(machine, inputs.study, inputs.plots, experiment.seed, experiment.threads, console);
+    return study(machine, inputs.study, inputs.plots,
+                 {experiment.seed, static_cast<unsigned>(experiment.threads)}, console);
   }
   if (inputs.is_field()) return field_experiment(machine, inputs.field, experiment, console);
   if (experiment.sensitivity) return sensitivity(machine, experiment, console);

@@ -112,7 +112,7 @@ void declare_study(Arguments& arguments, StudyInputs& inputs) {
 }
 
 Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& plots,
-              std::uint64_t seed, std::uint64_t threads, Console& console) {
+              StudyOptions options, Console& console) {
   if (!(inputs.runs > 0.0 && inputs.runs <= most_study_runs)) {
     usage_error("--study-runs: " + number_text(inputs.runs) + " must be above 0 and at most " +
                 number_text(most_study_runs));
@@ -120,9 +120,6 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& pl
   const StudyFiles files(*inputs.folder);
   make_folder(*inputs.folder);
   for (const std::string& file : files.all()) require_writable(file);
-  StudyOptions options;
-  options.seed = seed;
-  options.threads = static_cast<unsigned>(threads);
   options.runs = inputs.runs;
   std::mutex one_line;
   options.progress = [&](double done, const std::string& condition) {
@@ -132,7 +129,7 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& pl
   };
   const auto results = run_study(machine, default_study(machine), options);
   Outcome outcome;
-  outcome.json["seed"] = seed;
+  outcome.json["seed"] = options.seed;
   outcome.json["study"] = ordered_json::array();
   for (const StudyResult& result : results) {
     outcome.json["study"].push_back(condition_json(result));

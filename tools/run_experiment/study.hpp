@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -26,10 +25,10 @@ std::string interval_text(const StudyMean& mean);
 
 void declare_study(Arguments& arguments, StudyInputs& inputs);
 
-/// Runs the default study and writes its files into the folder: study.json with an entry per
-/// condition, runs.csv with a row per run, study.md with the table to read, study.svg with the
-/// figure.
+/// Runs the default study, with the seed and the threads of the options, and writes its files into
+/// the folder: study.json with an entry per condition, runs.csv with a row per run, study.md with
+/// the table to read, study.svg with the figure.
 Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& plots,
-              std::uint64_t seed, std::uint64_t threads, Console& console);
+              StudyOptions options, Console& console);
 
 }  // namespace excavplan::tools
