@@ -45,12 +45,12 @@ JobShape shape_of_cut(const Cut& cut, const std::optional<HeightMap>& ground, do
   return shape_of(design, cut_and_fill(design, *ground));
 }
 
-EstimateInPython estimated(const Machine& machine, const SoilKind& soil, const Cut& cut,
-                           const std::optional<HeightMap>& ground,
-                           const std::optional<GroundDensity>& density, double truck_mass,
-                           double grade, double batter, const std::optional<double>& fuel_price,
-                           const std::optional<double>& hour_price,
-                           const std::optional<double>& truckload_price) {
+EstimateInPython estimated_job(const Machine& machine, const SoilKind& soil, const Cut& cut,
+                               const std::optional<HeightMap>& ground,
+                               const std::optional<GroundDensity>& density, double truck_mass,
+                               double grade, double batter, const std::optional<double>& fuel_price,
+                               const std::optional<double>& hour_price,
+                               const std::optional<double>& truckload_price) {
   return call([&] {
     JobOutline job;
     job.shape = shape_of_cut(cut, ground, grade, batter);
@@ -167,7 +167,7 @@ void bind_estimates(py::module_& module) {
           "trustworthy", [](const E& of) { return of.trustworthy(); }, "False: see unlike.");
   bind_views(estimate);
   module.def(
-      "estimate_job", &estimated, arg("machine"), arg("soil"), arg("design"),
+      "estimate_job", &estimated_job, arg("machine"), arg("soil"), arg("design"),
       arg("ground") = py::none(), py::kw_only(), arg("density") = py::none(),
       arg("truck_mass") = JobOutline{}.truck_mass, arg("grade") = 0.0, arg("batter") = 0.0,
       arg("fuel_price") = py::none(), arg("hour_price") = py::none(),

@@ -202,7 +202,7 @@ std::string shown_event(const JobEvent& event) {
   return shown + ", " + rounded(event.time) + " s, " + rounded(event.left_volume) + " m^3 left>";
 }
 
-void bind_event(py::module_& module) {
+void bind_job_event(py::module_& module) {
   py::class_<JobEvent>(module, "JobEvent", "A step that was done, or a scan between steps.")
       .def_property_readonly(
           "what", [](const JobEvent& event) { return name(event.what); }, "As of a JobStep.")
@@ -226,8 +226,8 @@ void bind_event(py::module_& module) {
       .def("__repr__", &shown_event);
 }
 
-void bind_history(py::module_& module) {
-  bind_event(module);
+void bind_job_history(py::module_& module) {
+  bind_job_event(module);
   py::class_<JobHistory>(module, "JobHistory", "What was done in a job, with the ground after it.")
       .def_readonly("design", &JobHistory::design, "JobDesign.")
       .def_readonly("design_volume", &JobHistory::design_volume,
@@ -389,7 +389,7 @@ void bind_looking(JobClass& job) {
 void bind_jobs(py::module_& module) {
   bind_job_design(module);
   bind_settings(module);
-  bind_history(module);
+  bind_job_history(module);
   JobClass job(module, "SiteJob",
                "Decides the steps of a job. All that it knows is in a folder, written\n"
                "after every step.");

@@ -257,8 +257,8 @@ auto rehearsed(const PlanInPython& plan, const Work& work) {
   return work(*own, site);
 }
 
-Picture plot_of(const PlanInPython& plan, const std::string& what,
-                const std::optional<File>& file) {
+Picture plot_of_plan(const PlanInPython& plan, const std::string& what,
+                     const std::optional<File>& file) {
   if (!plan.dig) throw Error(ErrorKind::bad_input, "there is no dig to draw: " + plan.reason);
   const DigImage image = dig_image_of(what);
   return rehearsed(plan, [&](Call& own, const PlanSite& site) {
@@ -279,7 +279,7 @@ void write_report(const PlanInPython& plan, const File& file) {
 
 void bind_plan_views(PlanClass& bound) {
   bound
-      .def("plot", &plot_of, arg("what") = "section", arg("file") = py::none(),
+      .def("plot", &plot_of_plan, arg("what") = "section", arg("file") = py::none(),
            "A Picture of the dig, simulated once more.\n\n"
            "what: 'section', 'forces', 'torques', 'power' or 'cylinders'; file: also written to,\n"
            ".svg, .png or .pdf.")

@@ -256,8 +256,8 @@ void bind_parts(py::module_& module) {
       .def_readonly("disagreement", &SuccessiveDensity::disagreement, "In standard deviations.");
 }
 
-Picture plot_of(const DensityEstimate& estimate, const std::string& what,
-                const std::optional<File>& file) {
+Picture plot_of_estimate(const DensityEstimate& estimate, const std::string& what,
+                         const std::optional<File>& file) {
   const bool is_change = of_word<bool>("the plot", what, {{"change", true}, {"density", false}});
   return plotted(file, [&](ImageFormat format) {
     return is_change ? change_image(estimate, format) : density_image(estimate, format);
@@ -298,7 +298,7 @@ void bind_estimate(py::module_& module) {
       .def(
           "to_json", [](const E& estimate) { return to_json(estimate); },
           "The text that estimate-density prints with --json, but for its options.")
-      .def("plot", &plot_of, arg("what") = "change", arg("file") = py::none(),
+      .def("plot", &plot_of_estimate, arg("what") = "change", arg("file") = py::none(),
            "A Picture.\n\n"
            "what: 'change' of the ground, or 'density' with the law; file: also written to, .svg,\n"
            ".png or .pdf.")

@@ -246,7 +246,7 @@ TEST(PlanExtent, LeavesOutTheFarthestThousandthOnEachSide) {
 
 TEST(PlanExtent, IsThatOfTheSortedCoordinatesInWhateverOrderTheyCome) {
   Random random(5);
-  for (const std::size_t count : {1, 2, 999, 1000, 1001, 25000}) {
+  for (const std::size_t count : {1U, 2U, 999U, 1000U, 1001U, 25000U}) {
     std::vector<double> values(count);
     for (double& value : values) value = std::round(random.uniform(-300.0, 300.0));
     std::vector<double> sorted = values;

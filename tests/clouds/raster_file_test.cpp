@@ -186,7 +186,7 @@ TEST(TiffCoding, LzwOfTheSpecification) {
     held += width;
     for (; held >= 8; held -= 8) packed += static_cast<char>(bits >> (held - 8) & 255U);
   };
-  for (const unsigned code : {256, 7, 258, 8, 8, 258, 6, 6, 257}) add(code, 9);
+  for (const unsigned code : {256U, 7U, 258U, 8U, 8U, 258U, 6U, 6U, 257U}) add(code, 9);
   packed += static_cast<char>(bits << (8 - held));
   EXPECT_EQ(unpacked(5, packed, 9), "\7\7\7\x8\x8\7\7\6\6");
   EXPECT_EQ(unpacked(5, packed, 10), std::nullopt);

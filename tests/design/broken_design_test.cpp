@@ -107,7 +107,7 @@ TEST(BrokenDesigns, EachGivesAnErrorWithItsPlaceOrASurface) {
 /// Breaks that always leave no valid file.
 std::vector<Good> hopeless(const Good& good) {
   std::vector<Good> list;
-  for (int share = 0; share < 12; ++share) {  // cut off, down to nothing
+  for (std::size_t share = 0; share < 12; ++share) {  // cut off, down to nothing
     list.push_back({good.ending, good.content.substr(0, good.content.size() * share / 16)});
   }
   list.push_back({good.ending, string(100, '\0')});

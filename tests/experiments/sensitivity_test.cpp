@@ -51,7 +51,7 @@ TEST_F(Sensitivity, RegretIsWhatThePathLosesInTheReference) {
   const auto rows =
       run({{"drag", "none", [](DigModel& m) { m.search.bounds.upper.drag_length = 0.5; }},
            {"teeth", "none", [](DigModel& m) { m.machine.bucket.teeth.reset(); }}});
-  for (std::size_t i : {1, 2}) {
+  for (std::size_t i : {1U, 2U}) {
     const Terrain level = level_planning_ground(machine_);
     const auto simulator = default_simulator().make(machine_, loam_, 40.0);
     const auto again = evaluate_dig(machine_, *simulator, level, rows[i].best->parameters,

@@ -23,7 +23,7 @@ struct Facet {
   double height;
   Eigen::Vector2d slope;
 };
-using Ground = std::function<Facet(double x, double y)>;
+using Facets = std::function<Facet(double x, double y)>;
 
 /// Ridges of 0.25 m along x and y: strips of a metre that are level, rise or fall.
 Facet ridges(double x, double y) {
@@ -52,7 +52,7 @@ using Draw = std::function<int(double expected)>;
 
 /// On a slope 1 + g.v of the points of level ground hit: the geometry of rays. What faces away is
 /// not seen.
-Surface scan_of(const Ground& ground, const Eigen::Vector3d& sensor, const Density& density,
+Surface scan_of(const Facets& ground, const Eigen::Vector3d& sensor, const Density& density,
                 const Draw& draw) {
   Surface surface;
   HeightMap& map = surface.height;
@@ -79,7 +79,7 @@ int poisson(double mean, Random& random) {
 double of_equal_angles(const Eigen::Vector3d& ray) { return ray.z() / std::pow(ray.norm(), 3); }
 
 /// A scan of equal angles whose points come `together` at random.
-Surface random_scan(const Ground& ground, const Eigen::Vector3d& sensor, int together,
+Surface random_scan(const Facets& ground, const Eigen::Vector3d& sensor, int together,
                     std::uint64_t seed) {
   Random random(seed);
   return scan_of(
@@ -145,7 +145,7 @@ TEST(SensorPlace, BesideHeapsItIsSeldomWrong) {
     const double top = random.uniform(0.2, 0.5) * height;
     const double slope = random.uniform(0.5, 1.0);
     const Eigen::Vector2d centre(random.uniform(2.5, 5.0), random.uniform(2.0, 4.0));
-    const Ground cone = [&](double x, double y) {
+    const Facets cone = [&](double x, double y) {
       const Eigen::Vector2d from = Eigen::Vector2d(x, y) - centre;
       const double z = top - slope * from.norm();
       return z > 0.0 ? Facet{z, -slope * from.normalized()} : Facet{0.0, {0.0, 0.0}};

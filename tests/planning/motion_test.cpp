@@ -131,7 +131,7 @@ TEST(Motion, SwingAloneKeepsThePowerOfTheEngine) {
   const double inertia = inertia_of(machine, {-0.3, 1.5, 0.0}, 0.0).value;
   const double rate = machine.swing->speed;
   double way = 0.0, at = 0.0;  // of the begin, by steps
-  for (double time = 0.0; at < rate; time += 1e-4) {
+  while (at < rate) {
     at += 1e-4 * std::min(2.0, 30e3 / (inertia * std::max(at, 1e-9)));
     way += 1e-4 * at;
     duration -= 1e-4;

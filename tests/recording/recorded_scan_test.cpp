@@ -495,7 +495,7 @@ TEST(RecordedScan, CompressedDepthIsReadAsTheRawImage) {
     const RecordedScan scan = read_recorded_scan(recording, query_of(""));
     EXPECT_TRUE(scan.is_counted);
     ASSERT_EQ(scan.cloud.points.size(), 4U);
-    for (const std::size_t i : {0, 1, 3}) {
+    for (const std::size_t i : {0U, 1U, 3U}) {
       expect_near(scan.cloud.points[i], expected.cloud.points[i]);
     }
     EXPECT_TRUE(std::isnan(scan.cloud.points[2].x()));

@@ -156,7 +156,7 @@ TEST(ObstacleScan, ReliefAgainstLevelGroundEndsTrust) {
 TEST(ObstacleScan, NoTrustedMotionHitsAShape) {
   const ObstacleJudge judge;
   int trusted = 0, clear = 0;
-  for (const std::uint64_t number : {1, 2, 3, 8, 17, 25, 62, 63, 98}) {
+  for (const std::uint64_t number : {1U, 2U, 3U, 8U, 17U, 25U, 62U, 63U, 98U}) {
     const SceneVerdict verdict = judge.judge(number);
     EXPECT_FALSE(verdict.hits()) << number << ": " << verdict.text;
     trusted += verdict.trusted ? 1 : 0;

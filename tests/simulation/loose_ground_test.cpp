@@ -74,7 +74,7 @@ class LooseGround : public testing::Test {
 };
 
 using LooseSimulators = testing::Types<HeightMapSimulator, SectionSimulator>;
-TYPED_TEST_SUITE(LooseGround, LooseSimulators);
+TYPED_TEST_SUITE(LooseGround, LooseSimulators, );
 
 void expect_same(const DigResult& a, const DigResult& b, double share) {
   EXPECT_NEAR(a.energy.total, b.energy.total, share * b.energy.total);

@@ -13,6 +13,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
+#include "base/angles.hpp"
 #include "base/text.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/unit_inputs.hpp"
@@ -22,6 +23,15 @@ namespace excavplan::tools {
 namespace {
 
 constexpr double before_design = 1.5;  // of the tracks, where no base is told; ours [m]
+
+/// Refuses degrees without their unit, where they are more than a turn.
+double within_turn(const std::string& option, double heading) {
+  if (std::abs(heading) > 2.0 * pi) {
+    usage_error(option + ": a heading of " + number_text(heading) +
+                " rad is more than a turn; degrees have their unit, as in 90deg");
+  }
+  return heading;
+}
 
 /// An error of a value then names its option.
 template <typename Work>
@@ -78,7 +88,7 @@ DesignWords words_of(const OrderInputs& inputs) {
   if (!inputs.from) usage_error("--from is missing: where the trench begins");
   if (!inputs.heading) usage_error("--heading is missing: where the trench goes from there");
   words.from = parse_point("--from", *inputs.from);
-  words.heading = *inputs.heading;
+  words.heading = within_turn("--heading", *inputs.heading);
   return words;
 }
 
@@ -183,7 +193,7 @@ BasePose parse_base(const std::string& text) {
   }
   return {parse_quantity("--base", parts[0], Quantity::length),
           parse_quantity("--base", parts[1], Quantity::length), 0.0,
-          parse_quantity("--base", parts[2], Quantity::angle)};
+          within_turn("--base", parse_quantity("--base", parts[2], Quantity::angle))};
 }
 
 void declare_order(Arguments& arguments, OrderInputs& inputs) {
