@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inputs/site_folder.hpp"
 
+#include <cmath>
+
+#include "base/angles.hpp"
 #include "base/text.hpp"
 
 namespace excavplan::tools {
@@ -15,15 +18,26 @@ void declare_site_folder(Arguments& arguments, SiteFolderInputs& inputs, const s
   });
 }
 
-BasePose base_of(const SiteFolderInputs& inputs) {
-  if (!inputs.base) return {};
-  const std::vector<std::string> parts = split(*inputs.base, ',');
+double within_turn(const std::string& option, double heading) {
+  if (std::abs(heading) > 2.0 * pi) {
+    usage_error(option + ": a heading of " + number_text(heading) +
+                " rad is more than a turn; degrees have their unit, as in 90deg");
+  }
+  return heading;
+}
+
+BasePose parse_base(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
   if (parts.size() != 3) {
-    usage_error("--base: '" + *inputs.base + "' is not X,Y,HEADING such as 12,-3.5,90deg");
+    usage_error("--base: '" + text + "' is not X,Y,HEADING such as 12,-3.5,90deg");
   }
   return {parse_quantity("--base", parts[0], Quantity::length),
           parse_quantity("--base", parts[1], Quantity::length), 0.0,
-          parse_quantity("--base", parts[2], Quantity::angle)};
+          within_turn("--base", parse_quantity("--base", parts[2], Quantity::angle))};
+}
+
+BasePose base_of(const SiteFolderInputs& inputs) {
+  return inputs.base ? parse_base(*inputs.base) : BasePose();
 }
 
 nlohmann::ordered_json site_json(const excavplan::Site& site,

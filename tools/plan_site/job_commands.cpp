@@ -12,6 +12,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "inputs/site_folder.hpp"
 #include "live/page_server.hpp"
 #include "plan_site/estimate.hpp"
 #include "plan_site/job_feed.hpp"

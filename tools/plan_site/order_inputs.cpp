@@ -13,9 +13,9 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/trial/hidden_site.hpp>
 
-#include "base/angles.hpp"
 #include "base/text.hpp"
 #include "inputs/named_kinds.hpp"
+#include "inputs/site_folder.hpp"
 #include "inputs/unit_inputs.hpp"
 #include "scans/scan_reading.hpp"
 
@@ -23,15 +23,6 @@ namespace excavplan::tools {
 namespace {
 
 constexpr double before_design = 1.5;  // of the tracks, where no base is told; ours [m]
-
-/// Refuses degrees without their unit, where they are more than a turn.
-double within_turn(const std::string& option, double heading) {
-  if (std::abs(heading) > 2.0 * pi) {
-    usage_error(option + ": a heading of " + number_text(heading) +
-                " rad is more than a turn; degrees have their unit, as in 90deg");
-  }
-  return heading;
-}
 
 /// An error of a value then names its option.
 template <typename Work>
@@ -184,16 +175,6 @@ TimedScan scan_of(const SiteScanInputs& inputs) {
   if (is_raster(*inputs.scan)) taken.scan.z_is_up = true;
   taken.time = time_of(inputs.time, taken.report);
   return taken;
-}
-
-BasePose parse_base(const std::string& text) {
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.size() != 3) {
-    usage_error("--base: '" + text + "' is not X,Y,HEADING such as 12,-3.5,90deg");
-  }
-  return {parse_quantity("--base", parts[0], Quantity::length),
-          parse_quantity("--base", parts[1], Quantity::length), 0.0,
-          within_turn("--base", parse_quantity("--base", parts[2], Quantity::angle))};
 }
 
 void declare_order(Arguments& arguments, OrderInputs& inputs) {

@@ -34,9 +34,6 @@ struct TimedScan {
 /// @throws Error naming --scan if there is none
 TimedScan scan_of(const SiteScanInputs& inputs);
 
-/// "X,Y,HEADING". @throws Error (bad_input) naming --base
-BasePose parse_base(const std::string& text);
-
 struct OrderInputs {
   std::optional<std::string> site;  ///< description of a plain site
   std::optional<std::string> design, surface, trench, from, base;
