@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <utility>
 
 namespace excavplan {
@@ -43,13 +42,6 @@ Warning::Warning(WarningCode doubt, std::string text, bool is_end)
 bool any_ends_trust(const std::vector<Warning>& warnings) {
   return std::any_of(warnings.begin(), warnings.end(),
                      [](const Warning& each) { return each.ends_trust; });
-}
-
-std::vector<Warning> those_ending_trust(const std::vector<Warning>& warnings) {
-  std::vector<Warning> some;
-  std::copy_if(warnings.begin(), warnings.end(), std::back_inserter(some),
-               [](const Warning& each) { return each.ends_trust; });
-  return some;
 }
 
 }  // namespace excavplan

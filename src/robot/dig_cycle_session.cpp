@@ -24,6 +24,13 @@ namespace {
 using Frames = std::vector<LiveFrame>;
 using Time = LiveTime;
 
+std::vector<Warning> ending_trust(const std::vector<Warning>& all) {
+  std::vector<Warning> some;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+               [](const Warning& warning) { return warning.ends_trust; });
+  return some;
+}
+
 LiveSettings live_settings(const DigCycleSettings& settings) {
   return {settings.machine, settings.site_frame, settings.site_from_scan, settings.machine_in_view,
           settings.oldest_joints};
@@ -428,7 +435,7 @@ std::vector<Warning> DigCycleSession::State::plan_with_site(const std::optional<
   std::optional<Terrain> present;
   if (scan) {
     present = terrain(scan).terrain;
-    const std::vector<Warning> more = those_ending_trust(present->doubts);
+    const std::vector<Warning> more = ending_trust(present->doubts);
     doubts.insert(doubts.end(), more.begin(), more.end());
   }
   PlanOptions options = plan_options(scan);

@@ -177,9 +177,7 @@ SessionStep JobSession::plan(std::optional<std::int64_t> time) {
   SessionStep answer;
   answer.step = state.job.next();
   if (answer.step.moves_front()) state.add_motion(answer);
-  for (const Warning& each : answer.step.warnings) {
-    if (each.ends_trust) answer.step.trustworthy = false;
-  }
+  if (any_ends_trust(answer.step.warnings)) answer.step.trustworthy = false;
   if (answer.step.what != JobAction::stop) state.stage = SessionStage::driving;
   return answer;
 }

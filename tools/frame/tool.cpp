@@ -129,9 +129,7 @@ std::vector<Warning> machine_warnings(const std::string& list) {
 
 /// No result outlives a warning that ends trust, whoever added it.
 void settle_trust(Outcome& outcome) {
-  for (const Warning& warning : outcome.warnings) {
-    if (warning.ends_trust) outcome.trustworthy = false;
-  }
+  if (any_ends_trust(outcome.warnings)) outcome.trustworthy = false;
   if (outcome.trustworthy) return;
   if (outcome.json.contains("trustworthy")) outcome.json["trustworthy"] = false;
   const auto says = [](const std::string& line) {

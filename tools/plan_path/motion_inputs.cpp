@@ -144,10 +144,8 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
 }
 
 void add(const std::vector<Warning>& warnings, Outcome& outcome) {
-  for (const Warning& warning : warnings) {
-    outcome.warnings.push_back(warning);
-    outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
-  }
+  outcome.warnings.insert(outcome.warnings.end(), warnings.begin(), warnings.end());
+  if (any_ends_trust(warnings)) outcome.trustworthy = false;
   outcome.json["trustworthy"] = outcome.trustworthy;
 }
 

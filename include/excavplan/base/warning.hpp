@@ -26,7 +26,5 @@ struct Warning {
 
 /// Whether one of them ends trust.
 bool any_ends_trust(const std::vector<Warning>& warnings);
-/// Those that do, in their order.
-std::vector<Warning> those_ending_trust(const std::vector<Warning>& warnings);
 
 }  // namespace excavplan
