@@ -83,6 +83,7 @@ TEST_F(SiteTool, WhatDoesNotGoTogetherIsRefused) {
           "--site excludes");
   refused("estimate-density", {"--site", site(), "--undo", one + "a.xyz"}, "--undo takes no scans");
   refused("estimate-density", {one + "a.xyz", "--site", site(), "--base", "1,2"}, "X,Y,HEADING");
+  refused("estimate-density", {one + "a.xyz", "--site", site(), "--base", "1,2,90"}, "a turn");
   EXPECT_EQ(run_program("plan-path", {"--site", folder.file("nowhere")}).code, 3);
 }
 
