@@ -21,6 +21,7 @@
 #include "density/density_of_volumes.hpp"
 #include "density/known_site.hpp"
 #include "ground/too_few_cells.hpp"
+#include "scans/point_checks.hpp"
 #include "scans/scan_checks.hpp"
 #include "scans/scan_pairs.hpp"
 #include "soil/density_forms.hpp"

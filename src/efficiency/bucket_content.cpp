@@ -10,6 +10,7 @@
 
 #include "base/text.hpp"
 #include "ground/too_few_cells.hpp"
+#include "scans/point_checks.hpp"
 #include "scans/scan_checks.hpp"
 #include "scans/scan_pairs.hpp"
 

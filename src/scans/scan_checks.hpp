@@ -44,14 +44,6 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
 /// Of a machine that was taken out of the scans and hid a part of hole or heap.
 std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeChange& change);
 
-/// Code `two_surfaces`: points of hole, spill or heap lie on two surfaces, one above the other.
-/// Code `outliers`: points off even ground are so many and so far to one side of it that like ones
-/// in hole, spill and heap would count. Where they may change the bulking factor by 1 %; by 3 %, or
-/// 2 % of outliers, they end trust. Code `floor_cut`: a limit of heights cut the hole's floor off.
-/// @param pairs  of each area of the change; null where its points are not known
-std::vector<Warning> check_points(const std::vector<const SurfacePair*>& pairs,
-                                  const VolumeChange& change);
-
 /// Of ground that is bent like a ball about the sensor.
 std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area);
 

@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scans/point_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/non_finite.hpp"
+#include "base/statistics.hpp"
+#include "base/text.hpp"
+#include "clouds/points_by_cell.hpp"
+#include "ground/grid_cells.hpp"
+
+namespace excavplan {
+namespace {
+
+/// What a surface tells of its heights; zero where it has none.
+Eigen::ArrayXXf known(const Eigen::ArrayXXf& values, const Surface& surface) {
+  const Eigen::ArrayXXd& z = surface.height.z;
+  if (values.size() != z.size()) return Eigen::ArrayXXf::Zero(z.rows(), z.cols());
+  return z.isNaN().select(0.0F, values);
+}
+
+/// -1 in the hole, 1 in spill and heap, 0 elsewhere.
+Eigen::ArrayXXi parts_of(const VolumeChange& change, const AreaChange& area) {
+  Eigen::ArrayXXi part = Eigen::ArrayXXi::Zero(area.zone.rows(), area.zone.cols());
+  for_each_cell(part, [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    if (zone < 0) return;
+    const ZoneKind kind = change.zones[static_cast<std::size_t>(zone)].kind;
+    if (kind != ZoneKind::other) part(at.row, at.col) = kind == ZoneKind::dig ? -1 : 1;
+  });
+  return part;
+}
+
+double ratio(double part, double all) { return all > 0.0 ? part / all : 0.0; }
+
+/// With the ground beside them whose doubt grew: the lower of its two surfaces may be the ground
+/// before.
+Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
+                                 const Eigen::ArrayXXf& growth) {
+  Eigen::ArrayXXi part = parts_of(change, area);
+  std::vector<Cell> front;
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) != 0) front.push_back(at);
+  });
+  for (std::size_t next = 0; next < front.size(); ++next) {
+    const int here = part(front[next].row, front[next].col);
+    for_each_neighbour(part, front[next], [&](Cell n) {
+      if (part(n.row, n.col) != 0 || !(growth(n.row, n.col) > 0.0F)) return;
+      part(n.row, n.col) = here;
+      front.push_back(n);
+    });
+  }
+  return part;
+}
+
+/// Volumes that points put in doubt [m^3].
+struct DoubtfulVolume {
+  double hole = 0.0;
+  double soil = 0.0;  ///< spill and heap
+  double in_before = 0.0;
+  double in_after = 0.0;
+
+  double& of(int part) { return part < 0 ? hole : soil; }
+  double sum() const { return hole + soil; }
+  const char* scan() const { return in_after > in_before ? "after" : "before"; }
+  double share_of(const VolumeChange& change) const {
+    return std::abs(ratio(hole, change.before.value) + ratio(soil, change.after.value));
+  }
+};
+
+void add_overlays(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+                  DoubtfulVolume& doubt) {
+  constexpr double weight_of_new =
+      3.0;  // ours: nothing grows on dug soil, so that either may be it
+  const Eigen::ArrayXXf of_before = known(surfaces.before.doubt, surfaces.before);
+  const Eigen::ArrayXXf of_after = known(surfaces.after.doubt, surfaces.after);
+  const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) == 0) return;
+    const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
+    const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
+    const double grown = std::max(0.0, after - before);
+    doubt.of(part(at.row, at.col)) += before + after + (weight_of_new - 1.0) * grown;
+    doubt.in_before += before;
+    doubt.in_after += after;
+  });
+}
+
+/// Of the points about the height of their cell, in the median of the cells of one part [m]; NaN
+/// where none tells.
+double scatter_of(const Surface& surface, const Eigen::ArrayXXi& parts, int part) {
+  if (surface.points.size() != parts.size() || surface.variance.size() != parts.size()) return nan;
+  std::vector<double> squares;
+  for_each_cell(parts, [&](Cell at) {
+    if (parts(at.row, at.col) != part) return;
+    const int points = std::min(surface.points(at.row, at.col), most_points_of_cell);
+    const double square = points * surface.variance(at.row, at.col);
+    if (!std::isnan(square)) squares.push_back(square);
+  });
+  return squares.empty() ? nan : std::sqrt(quantile(squares, 0.5));
+}
+
+/// Of cells, those with one point at least of a kind, and how many points each cell has.
+struct CellsWithKind {
+  double with = 0.0;
+  std::vector<int> points;
+
+  /// Of all points that are of the kind [-], by which as many cells have one in the mean.
+  double share() const {
+    double low = 0.0;
+    double high = 1.0;
+    for (int halving = 0; halving < 30; ++halving) {
+      const double share = 0.5 * (low + high);
+      double expected = 0.0;
+      for (const int count : points) expected += 1.0 - std::pow(1.0 - share, count);
+      (expected < with ? low : high) = share;
+    }
+    return high;
+  }
+};
+
+/// Of a cell and the eight around it, what lies higher.
+struct Around {
+  int higher = 0;
+  double height = 0.0;  ///< their mean [m]
+};
+
+Around around_of(const Eigen::ArrayXXd& apart, Cell at, double least) {
+  Around found;
+  for_each_around(apart, at, 1, [&](Cell n) {
+    if (!(apart(n.row, n.col) > least)) return;
+    found.height = (found.height * found.higher + apart(n.row, n.col)) / (found.higher + 1);
+    ++found.higher;
+  });
+  return found;
+}
+
+/// By how much points on `lower` lower the volume between it and `upper`, though taken for `upper`
+/// [m^3]: of cells amid cells of one part that lie higher, those whose lowest point is on `lower`.
+/// Hardly any outlier is, and on a fine grid the points of a cell are too few to show two levels.
+double lowered_by_points_of(const Surface& lower, const Surface& upper,
+                            const Eigen::ArrayXXi& parts, int part) {
+  constexpr double sure = 8.0;   // of the noise: a change that none of its points reaches; ours
+  constexpr double same = 3.0;   // of the noise: points on one surface; ours
+  constexpr int amid = 5;        // of the nine: no cell at the rim of a change; ours
+  constexpr double most = 0.75;  // of the points: of more, no height is known; ours
+  if (upper.below.size() != upper.height.z.size()) return 0.0;
+  const double noise = scatter_of(upper, parts, 0);
+  if (std::isnan(noise)) return 0.0;
+  const Eigen::ArrayXXd all = upper.height.z - lower.height.z;
+  const Eigen::ArrayXXd apart = (parts == part).select(all, nan);
+  const double least = std::max(sure * noise, upper.height.cell_size);
+  CellsWithKind cells;
+  double height = 0.0;
+  for_each_cell(parts, [&](Cell at) {
+    const Around around = around_of(apart, at, least);
+    if (around.higher < amid || std::isnan(all(at.row, at.col))) return;
+    height += around.height;
+    cells.points.push_back(std::min(upper.points(at.row, at.col), most_points_of_cell));
+    const double lowest = all(at.row, at.col) - static_cast<double>(upper.below(at.row, at.col));
+    cells.with += std::abs(lowest) < same * noise ? 1.0 : 0.0;
+  });
+  const double share = std::min(most, cells.share());
+  return height * std::pow(upper.height.cell_size, 2) * share / (1.0 - share);
+}
+
+/// Points of the ground before among those of the soil that lies on it, and of the floor of a hole
+/// among those of the ground before: a scan that holds two times.
+void add_other_times(const SurfacePair& surfaces, const VolumeChange& change,
+                     const AreaChange& area, DoubtfulVolume& doubt) {
+  const Eigen::ArrayXXi parts = parts_of(change, area);
+  const double soil = lowered_by_points_of(surfaces.before, surfaces.after, parts, 1);
+  const double hole = lowered_by_points_of(surfaces.after, surfaces.before, parts, -1);
+  doubt.soil += soil;
+  doubt.hole += hole;
+  doubt.in_after += soil;
+  doubt.in_before += hole;
+}
+
+std::vector<Warning> warning_of_overlays(const DoubtfulVolume& doubt, const VolumeChange& change) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.03;  // ours, likewise
+  const double share = doubt.share_of(change);
+  if (!(share > noted)) return {};
+  return {{WarningCode::two_surfaces,
+           std::string("points of the scan ") + doubt.scan() +
+               " lie on two surfaces, one above the other, which leaves " +
+               readable(doubt.hole, 2) + " m^3 of the hole and " + readable(doubt.soil, 2) +
+               " m^3 of spill and heap in doubt: leave out dust, plants and what else is above the "
+               "ground, and points that were taken at other times",
+           share > doubtful}};
+}
+
+/// What outliers that are not told from the ground raise.
+void add_outliers(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+                  DoubtfulVolume& doubt) {
+  const Eigen::ArrayXXf of_before = known(surfaces.before.outlier_bias, surfaces.before);
+  const Eigen::ArrayXXf of_after = known(surfaces.after.outlier_bias, surfaces.after);
+  const Eigen::ArrayXXi part = parts_of(change, area);
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) == 0) return;
+    const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
+    const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
+    doubt.of(part(at.row, at.col)) += after - before;
+    doubt.in_before += std::abs(before);
+    doubt.in_after += std::abs(after);
+  });
+}
+
+std::vector<Warning> warning_of_outliers(const DoubtfulVolume& doubt, const VolumeChange& change) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.02;  // ours: twice the error of a good survey
+  const double share = doubt.share_of(change);
+  if (!(share > noted)) return {};
+  const bool are_above = (doubt.sum() > 0.0) == (doubt.in_after > doubt.in_before);
+  return {{WarningCode::outliers,
+           std::string("points of the scan ") + doubt.scan() + " lie off the ground, " +
+               (are_above ? "above" : "below") +
+               " it in the main; where it is uneven they are not told from it, which may change "
+               "the bulking factor by " +
+               readable(100.0 * share, 2) +
+               " %: scan again without dust, rain or vibration, or clean the cloud",
+           share > doubtful}};
+}
+
+/// Rounded heights of several cells are the same.
+bool are_rounded(const std::vector<double>& sorted) {
+  constexpr double same = 1e-6;  // [m]
+  std::size_t alike = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) alike += sorted[i] - sorted[i - 1] < same ? 1 : 0;
+  return 2 * alike > sorted.size();
+}
+
+/// A floor that a limit of heights cuts: cells of the hole whose lowest points lie at one height,
+/// as no noise leaves them. Nothing of rounded heights, which do.
+std::optional<Warning> floor_cut(const SurfacePair& surfaces, const VolumeChange& change,
+                                 const AreaChange& area) {
+  constexpr std::size_t blunders = 2;    // below the floor; ours
+  constexpr std::ptrdiff_t fewest = 20;  // ours
+  constexpr double least_noise = 2e-3;   // [m], ours: less hides no volume that counts
+  constexpr double edge = 0.25;          // ours, of the noise
+  constexpr double floor = 2.0;          // ours, likewise
+  constexpr double most = 0.25;  // ours: noise leaves some 0.03 of the cells so near the lowest
+  const Surface& after = surfaces.after;
+  if (after.below.size() != after.height.z.size()) return {};
+  const Eigen::ArrayXXi part = parts_of(change, area);
+  std::vector<double> lowest;
+  for_each_cell(part, [&](Cell at) {
+    const double here =
+        after.height.z(at.row, at.col) - static_cast<double>(after.below(at.row, at.col));
+    if (part(at.row, at.col) >= 0 || std::isnan(here)) return;
+    lowest.push_back(here);
+  });
+  std::sort(lowest.begin(), lowest.end());
+  const double noise = scatter_of(after, part, -1);
+  if (lowest.size() <= blunders || !(noise >= least_noise) || are_rounded(lowest)) return {};
+  const auto up_to = [&](double height) {
+    return std::upper_bound(lowest.begin(), lowest.end(), lowest[blunders] + height) -
+           lowest.begin();  // cells
+  };
+  const auto at_edge = up_to(edge * noise);
+  if (at_edge < fewest ||
+      static_cast<double>(at_edge) < most * static_cast<double>(up_to(floor * noise))) {
+    return {};
+  }
+  return Warning{WarningCode::floor_cut,
+                 "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
+                     readable(lowest[blunders], 4) +
+                     " m, as where a limit of heights or depths cuts "
+                     "the floor off: what lies deeper is missing; widen the limit"};
+}
+
+}  // namespace
+
+std::vector<Warning> check_points(const std::vector<const SurfacePair*>& pairs,
+                                  const VolumeChange& change) {
+  DoubtfulVolume overlays;
+  DoubtfulVolume outliers;
+  std::vector<Warning> floors;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i] == nullptr) continue;
+    const AreaChange& area = change.areas[i];
+    add_overlays(*pairs[i], change, area, overlays);
+    add_other_times(*pairs[i], change, area, overlays);
+    add_outliers(*pairs[i], change, area, outliers);
+    if (auto cut = floor_cut(*pairs[i], change, area)) floors.push_back(std::move(*cut));
+  }
+  std::vector<Warning> found = warning_of_overlays(overlays, change);
+  for (const auto& more : {warning_of_outliers(outliers, change), floors}) {
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  return found;
+}
+
+}  // namespace excavplan
