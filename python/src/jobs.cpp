@@ -364,6 +364,13 @@ void bind_looking(JobClass& job) {
           },
           "Of the last scan that was taken in.")
       .def_property_readonly(
+          "design_warnings",
+          [](JobInPython& of) {
+            return of.with([](SiteJob& own) { return own.design_warnings(); });
+          },
+          "What of the design cannot be done or is not asked for rightly: design_above_ground,\n"
+          "design_beyond_scan, design_out_of_reach, dump_on_design, wide_tolerance.")
+      .def_property_readonly(
           "wall_warnings",
           [](JobInPython& of) { return of.with([](SiteJob& own) { return own.wall_warnings(); }); },
           "unstable_wall, if a wall of the design would not stand.")

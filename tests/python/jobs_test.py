@@ -60,6 +60,13 @@ class Jobs(unittest.TestCase):
         frame = numbers(step.site_from_line)
         self.assertAlmostEqual(math.hypot(frame[0][0], frame[1][0]), 1.0)
 
+    def test_what_is_not_asked_for_rightly_is_told(self):
+        self.assertEqual(self.begun().design_warnings, [])
+        shallow = write_plain_site(os.path.join(os.path.dirname(self.path), "T02"), length=1.5, depth=0.05)
+        settings = ex.JobSettings.of_site(shallow / "site.json")
+        job = ex.SiteJob.begin(os.path.join(os.path.dirname(self.path), "shallow"), settings, time=BEGIN)
+        self.assertEqual([warning.code for warning in job.design_warnings], ["wide_tolerance"])
+
     def test_done_undo_and_resume(self):
         job, truth = self.begun(), self.truth()
         self.assertEqual(job.wall_warnings, [])
