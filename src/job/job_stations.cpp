@@ -26,8 +26,8 @@ constexpr double end_wall = 0.67;     // of that reach to the far end: nearer th
                                       // little for a steep cut
 constexpr double end_of_wide = 0.74;  // likewise of a wide design: its face leans back, and takes
                                       // up what is within reach of a nearer place
-constexpr double overlap = 1.3;   // of what is dug from two places in succession: ends of passes
-                                  // are rough, and the flat bucket begins nearer than it digs [m]
+constexpr double overlap = 1.3;  // of what is dug from two places in succession: ends of passes
+                                 // are rough, and the flat bucket begins nearer than it digs [m]
 constexpr double overlap_of_faces = 0.7;   // likewise of passes that begin on their way down [m]
 constexpr double side_margin = 0.04;       // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.03;        // to the ends of the design, half a cell at least [m]
