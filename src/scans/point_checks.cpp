@@ -3,6 +3,7 @@
 #include "scans/point_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -107,40 +108,48 @@ double scatter_of(const Surface& surface, const Eigen::ArrayXXi& parts, int part
   return squares.empty() ? nan : std::sqrt(quantile(squares, 0.5));
 }
 
-/// Of cells, those with one point at least of a kind, and how many points each cell has.
+/// Cells by their number of points, and those with one point at least of a kind.
 struct CellsWithKind {
+  std::array<double, most_points_of_cell + 1> of_points{};
   double with = 0.0;
-  std::vector<int> points;
 
   /// Of all points that are of the kind [-], by which as many cells have one in the mean.
   double share() const {
     double low = 0.0;
-    double high = 1.0;
+    double high = with > 0.0 ? 1.0 : 0.0;
     for (int halving = 0; halving < 30; ++halving) {
       const double share = 0.5 * (low + high);
+      double without = 1.0;  // of the cells with so many points
       double expected = 0.0;
-      for (const int count : points) expected += 1.0 - std::pow(1.0 - share, count);
+      for (const double cells : of_points) {
+        expected += cells * (1.0 - without);
+        without *= 1.0 - share;
+      }
       (expected < with ? low : high) = share;
     }
     return high;
   }
 };
 
-/// Of a cell and the eight around it, what lies higher.
-struct Around {
-  int higher = 0;
-  double height = 0.0;  ///< their mean [m]
-};
+/// How many cells of a cell and the eight around it are higher than `least`, and the sum of their
+/// heights [m].
+struct HigherAround {
+  HigherAround(const Eigen::ArrayXXd& heights, double least)
+      : count(Eigen::ArrayXXi::Zero(heights.rows(), heights.cols())),
+        sum(Eigen::ArrayXXd::Zero(heights.rows(), heights.cols())) {
+    for_each_cell(heights, [&](Cell at) {
+      const double here = heights(at.row, at.col);
+      if (!(here > least)) return;
+      for_each_around(heights, at, 1, [&](Cell n) {
+        ++count(n.row, n.col);
+        sum(n.row, n.col) += here;
+      });
+    });
+  }
 
-Around around_of(const Eigen::ArrayXXd& apart, Cell at, double least) {
-  Around found;
-  for_each_around(apart, at, 1, [&](Cell n) {
-    if (!(apart(n.row, n.col) > least)) return;
-    found.height = (found.height * found.higher + apart(n.row, n.col)) / (found.higher + 1);
-    ++found.higher;
-  });
-  return found;
-}
+  Eigen::ArrayXXi count;
+  Eigen::ArrayXXd sum;
+};
 
 /// By how much points on `lower` lower the volume between it and `upper`, though taken for `upper`
 /// [m^3]: of cells amid cells of one part that lie higher, those whose lowest point is on `lower`.
@@ -154,17 +163,19 @@ double lowered_by_points_of(const Surface& lower, const Surface& upper,
   if (upper.below.size() != upper.height.z.size()) return 0.0;
   const double noise = scatter_of(upper, parts, 0);
   if (std::isnan(noise)) return 0.0;
-  const Eigen::ArrayXXd all = upper.height.z - lower.height.z;
-  const Eigen::ArrayXXd apart = (parts == part).select(all, nan);
-  const double least = std::max(sure * noise, upper.height.cell_size);
+  const Eigen::ArrayXXd apart = upper.height.z - lower.height.z;
+  const HigherAround around((parts == part).select(apart, 0.0),
+                            std::max(sure * noise, upper.height.cell_size));
   CellsWithKind cells;
   double height = 0.0;
   for_each_cell(parts, [&](Cell at) {
-    const Around around = around_of(apart, at, least);
-    if (around.higher < amid || std::isnan(all(at.row, at.col))) return;
-    height += around.height;
-    cells.points.push_back(std::min(upper.points(at.row, at.col), most_points_of_cell));
-    const double lowest = all(at.row, at.col) - static_cast<double>(upper.below(at.row, at.col));
+    const int higher = around.count(at.row, at.col);
+    const double here = apart(at.row, at.col);
+    if (higher < amid || std::isnan(here)) return;
+    height += around.sum(at.row, at.col) / higher;
+    const int points = std::min(upper.points(at.row, at.col), most_points_of_cell);
+    cells.of_points[static_cast<std::size_t>(points)] += 1.0;
+    const double lowest = here - static_cast<double>(upper.below(at.row, at.col));
     cells.with += std::abs(lowest) < same * noise ? 1.0 : 0.0;
   });
   const double share = std::min(most, cells.share());
