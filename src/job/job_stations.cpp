@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include <excavplan/simulation/dig_ground.hpp>
+
 #include "base/angles.hpp"
 #include "job/dump_place.hpp"
 
@@ -26,9 +28,12 @@ constexpr double end_wall = 0.67;     // of that reach to the far end: nearer th
                                       // little for a steep cut
 constexpr double end_of_wide = 0.74;  // likewise of a wide design: its face leans back, and takes
                                       // up what is within reach of a nearer place
-constexpr double overlap = 1.3;  // of what is dug from two places in succession: ends of passes
-                                 // are rough, and the flat bucket begins nearer than it digs [m]
-constexpr double overlap_of_faces = 0.7;   // likewise of passes that begin on their way down [m]
+// Of what is dug from two places in succession, of the zx120 [m]: ends of passes are rough, and a
+// flat bucket begins nearer than it digs.
+constexpr double overlap = 1.3;
+constexpr double overlap_of_wide = 0.25;   // likewise of a wide design, whose rows reach farther
+constexpr double overlap_of_faces = 0.7;   // likewise of passes that begin on their way down
+constexpr double most_shared = 0.7;        // likewise, of all that is dug from a place
 constexpr double side_margin = 0.04;       // to the sides of the design, as no machine is exact [m]
 constexpr double end_margin = 0.03;        // to the ends of the design, half a cell at least [m]
 constexpr double lane_overlap = 0.1;       // of two lanes [m]
@@ -220,6 +225,15 @@ double farthest_of(const Machine& machine, bool is_wide = false) {
   return at_reach(machine, is_wide ? farthest_of_wide : farthest_work);
 }
 
+/// Of what is dug from two places in succession [m].
+double shared_of(const JobFrame& frame, const Machine& machine, bool is_wide) {
+  const double wanted = frame.has_faces_across() ? overlap_of_faces
+                        : is_wide                ? overlap_of_wide
+                                                 : overlap;
+  const double all = farthest_of(machine) - nearest_of(frame, machine);
+  return std::min(wanted * dig_size(machine), most_shared * all);
+}
+
 /// Along the line, from where all that is near is reached.
 double last_of(const JobFrame& frame, const Machine& machine) {
   return std::min(frame.far - at_reach(machine, end_wall), frame.near - nearest_of(frame, machine));
@@ -310,7 +324,7 @@ std::vector<JobStation> stations_of(const JobFrame& frame, const JobSettings& se
   const double first =
       frame.far - at_reach(machine, is_wide && frame.is_battered ? end_of_wide : end_wall);
   const double last = last_of(frame, machine);
-  const double shared = frame.has_faces_across() ? overlap_of_faces : overlap;
+  const double shared = shared_of(frame, machine, is_wide);
   const double most_back = farthest_of(machine) - nearest_of(frame, machine) - shared;
   const int more = static_cast<int>(std::ceil((first - last) / most_back - 1e-9));
   const double soil = side_of_soil(frame, settings.design);

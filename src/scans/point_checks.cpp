@@ -75,10 +75,12 @@ struct DoubtfulVolume {
   }
 };
 
+// Of doubt that is new after the dig, ours: nothing grows on dug soil, so that either surface may
+// be it, and points of another time also lie where the scan sees none of its own.
+constexpr double weight_of_new = 3.0;
+
 void add_overlays(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
                   DoubtfulVolume& doubt) {
-  constexpr double weight_of_new =
-      3.0;  // ours: nothing grows on dug soil, so that either may be it
   const Eigen::ArrayXXf of_before = known(surfaces.before.doubt, surfaces.before);
   const Eigen::ArrayXXf of_after = known(surfaces.after.doubt, surfaces.after);
   const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
@@ -105,7 +107,7 @@ double scatter_of(const Surface& surface, const Eigen::ArrayXXi& parts, int part
     const double square = points * surface.variance(at.row, at.col);
     if (!std::isnan(square)) squares.push_back(square);
   });
-  return squares.empty() ? nan : std::sqrt(quantile(squares, 0.5));
+  return squares.empty() ? nan : std::sqrt(quantile(std::move(squares), 0.5));
 }
 
 /// Cells by their number of points, and those with one point at least of a kind.
@@ -118,21 +120,20 @@ struct CellsWithKind {
     double low = 0.0;
     double high = with > 0.0 ? 1.0 : 0.0;
     for (int halving = 0; halving < 30; ++halving) {
-      const double share = 0.5 * (low + high);
+      const double tried = 0.5 * (low + high);
       double without = 1.0;  // of the cells with so many points
       double expected = 0.0;
       for (const double cells : of_points) {
         expected += cells * (1.0 - without);
-        without *= 1.0 - share;
+        without *= 1.0 - tried;
       }
-      (expected < with ? low : high) = share;
+      (expected < with ? low : high) = tried;
     }
     return high;
   }
 };
 
-/// How many cells of a cell and the eight around it are higher than `least`, and the sum of their
-/// heights [m].
+/// How many of the 25 cells about a cell are higher than `least`, and the sum of their heights [m].
 struct HigherAround {
   HigherAround(const Eigen::ArrayXXd& heights, double least)
       : count(Eigen::ArrayXXi::Zero(heights.rows(), heights.cols())),
@@ -140,7 +141,7 @@ struct HigherAround {
     for_each_cell(heights, [&](Cell at) {
       const double here = heights(at.row, at.col);
       if (!(here > least)) return;
-      for_each_around(heights, at, 1, [&](Cell n) {
+      for_each_around(heights, at, 2, [&](Cell n) {
         ++count(n.row, n.col);
         sum(n.row, n.col) += here;
       });
@@ -151,35 +152,38 @@ struct HigherAround {
   Eigen::ArrayXXd sum;
 };
 
-/// By how much points on `lower` lower the volume between it and `upper`, though taken for `upper`
-/// [m^3]: of cells amid cells of one part that lie higher, those whose lowest point is on `lower`.
-/// Hardly any outlier is, and on a fine grid the points of a cell are too few to show two levels.
-double lowered_by_points_of(const Surface& lower, const Surface& upper,
-                            const Eigen::ArrayXXi& parts, int part) {
-  constexpr double sure = 8.0;   // of the noise: a change that none of its points reaches; ours
-  constexpr double same = 3.0;   // of the noise: points on one surface; ours
-  constexpr int amid = 5;        // of the nine: no cell at the rim of a change; ours
-  constexpr double most = 0.75;  // of the points: of more, no height is known; ours
-  if (upper.below.size() != upper.height.z.size()) return 0.0;
-  const double noise = scatter_of(upper, parts, 0);
-  if (std::isnan(noise)) return 0.0;
-  const Eigen::ArrayXXd apart = upper.height.z - lower.height.z;
+/// How much of one part is in doubt by points on the ground of another time that were taken for its
+/// surface `upper` [m^3]: amid cells that lie `apart` from that ground, cells whose lowest
+/// point is on it tell the share of such points. Hardly any outlier is there, and on a fine grid
+/// the points of a cell are too few to show two levels.
+///
+/// @param apart  of `upper` over the ground of the other time [m]
+/// @param noise  of a point on either [m]
+double lowered_by_points_of(const Surface& upper, const Eigen::ArrayXXd& apart,
+                            const Eigen::ArrayXXi& parts, int part, double noise) {
+  constexpr double sure = 8.0;    // of the noise: so far apart are cells around; ours
+  constexpr double same = 3.0;    // of the noise: points on one surface; ours
+  constexpr int amid = 16;        // of the 25: at a straight rim there are 15; ours
+  constexpr double fewest = 5.0;  // cells with such points: fewer are chance; ours
+  constexpr double most = 0.75;   // of the points: of more, no height is known; ours
+  if (upper.below.size() != upper.height.z.size() || std::isnan(noise)) return 0.0;
   const HigherAround around((parts == part).select(apart, 0.0),
                             std::max(sure * noise, upper.height.cell_size));
   CellsWithKind cells;
   double height = 0.0;
   for_each_cell(parts, [&](Cell at) {
     const int higher = around.count(at.row, at.col);
-    const double here = apart(at.row, at.col);
-    if (higher < amid || std::isnan(here)) return;
-    height += around.sum(at.row, at.col) / higher;
     const int points = std::min(upper.points(at.row, at.col), most_points_of_cell);
+    const double lowest = apart(at.row, at.col) - static_cast<double>(upper.below(at.row, at.col));
+    if (higher < amid || points < 1 || std::isnan(lowest)) return;
+    height += around.sum(at.row, at.col) / higher;
     cells.of_points[static_cast<std::size_t>(points)] += 1.0;
-    const double lowest = here - static_cast<double>(upper.below(at.row, at.col));
     cells.with += std::abs(lowest) < same * noise ? 1.0 : 0.0;
   });
+  if (cells.with < fewest) return 0.0;
   const double share = std::min(most, cells.share());
-  return height * std::pow(upper.height.cell_size, 2) * share / (1.0 - share);
+  const double lost = height * std::pow(upper.height.cell_size, 2) * share / (1.0 - share);
+  return weight_of_new * lost;
 }
 
 /// Points of the ground before among those of the soil that lies on it, and of the floor of a hole
@@ -187,8 +191,15 @@ double lowered_by_points_of(const Surface& lower, const Surface& upper,
 void add_other_times(const SurfacePair& surfaces, const VolumeChange& change,
                      const AreaChange& area, DoubtfulVolume& doubt) {
   const Eigen::ArrayXXi parts = parts_of(change, area);
-  const double soil = lowered_by_points_of(surfaces.before, surfaces.after, parts, 1);
-  const double hole = lowered_by_points_of(surfaces.after, surfaces.before, parts, -1);
+  const Eigen::ArrayXXd& risen = area.difference.z;
+  const auto noise_beside = [&](const Surface& upper, const Surface& lower) {
+    const double of_lower = scatter_of(lower, parts, 0);  // NaN of ground without points
+    return std::hypot(scatter_of(upper, parts, 0), std::isnan(of_lower) ? 0.0 : of_lower);
+  };
+  const double soil = lowered_by_points_of(surfaces.after, risen, parts, 1,
+                                           noise_beside(surfaces.after, surfaces.before));
+  const double hole = lowered_by_points_of(surfaces.before, -risen, parts, -1,
+                                           noise_beside(surfaces.before, surfaces.after));
   doubt.soil += soil;
   doubt.hole += hole;
   doubt.in_after += soil;

@@ -407,13 +407,16 @@ void add_before_to_after(DigScans& scans, int every, const Rectangle& where) {
 }
 
 // In most cells they are too few to show two levels.
-TEST(BadMeaning, AThirdOfTheGroundBeforeAmongTheHeap) {
+TEST(BadMeaning, AThirdOfTheGroundBeforeAmongThatAfter) {
+  const std::pair<const char*, Rectangle> places[] = {
+      {"in the heap", {3.2, -100.0, 100.0, 100.0}}, {"in the hole", {-100.0, -100.0, 3.2, 100.0}}};
   for (const Pair& pair : {rough(), lidar()}) {
-    expect_no_wrong_answer({wrong_scans(pair, "before among the heap after",
-                                        [](DigScans& s, auto&) {
-                                          add_before_to_after(s, 3, {3.2, -100.0, 100.0, 100.0});
-                                        },
-                                        {"two_surfaces"})});
+    for (const auto& [name, place] : places) {
+      const Rectangle where = place;
+      expect_no_wrong_answer({wrong_scans(
+          pair, std::string("before among after ") + name,
+          [where](DigScans& s, auto&) { add_before_to_after(s, 3, where); }, {"two_surfaces"})});
+    }
   }
 }
 

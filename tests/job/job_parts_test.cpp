@@ -7,9 +7,12 @@
 #include <fstream>
 #include <memory>
 #include <set>
+#include <string>
 #include <utility>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/job/job_motion.hpp>
+#include <excavplan/machine/machine_file.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -75,6 +78,20 @@ TEST(JobStations, GoBackwardsAndReachAllOfTheDesign) {
     covered = stations[i].along + range.near;
   }
   EXPECT_LT(covered, frame.near + 0.1);
+}
+
+TEST(JobStations, OfEveryMachineShareMuchOfWhatTheyReach) {
+  for (const char* machine : {"generic-mini", "generic-20t", "zx120", "zx200"}) {
+    HandMadeJob job(15.0, 1.0);
+    job.settings.site.machine =
+        load_machine(find_data_file(std::string("machines/") + machine + ".json"));
+    const auto stations = stations_of(job.frame(), job.settings);
+    ASSERT_GT(stations.size(), 2u) << machine;
+    const WorkRange range = work_range(job.frame(), job.settings.site.machine, stations[1].along);
+    const double back = stations[0].along - stations[1].along;
+    EXPECT_LT(back, 0.7 * (range.far - range.near)) << machine;
+    EXPECT_GT(back, 0.25 * (range.far - range.near)) << machine;
+  }
 }
 
 TEST(JobStations, LanesCoverTheWidth) {

@@ -162,12 +162,14 @@ template <typename A> struct Server {
   using AcceptedCallback = std::function<void(std::shared_ptr<ServerGoalHandle<A>>)>;
 };
 template <typename A, typename N>
-typename Server<A>::SharedPtr create_server(N node, const std::string& name,
-                                            typename Server<A>::GoalCallback goal,
-                                            typename Server<A>::CancelCallback cancel,
-                                            typename Server<A>::AcceptedCallback accepted,
-                                            const rcl_action_server_options_t& options,
-                                            rclcpp::CallbackGroup::SharedPtr group);
+typename Server<A>::SharedPtr create_server(N, const std::string&,
+                                            typename Server<A>::GoalCallback,
+                                            typename Server<A>::CancelCallback,
+                                            typename Server<A>::AcceptedCallback,
+                                            const rcl_action_server_options_t&,
+                                            rclcpp::CallbackGroup::SharedPtr) {
+  return nullptr;
+}
 }  // namespace rclcpp_action
 """
 
