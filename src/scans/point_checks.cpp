@@ -40,11 +40,9 @@ Eigen::ArrayXXi parts_of(const VolumeChange& change, const AreaChange& area) {
 
 double ratio(double part, double all) { return all > 0.0 ? part / all : 0.0; }
 
-/// With the ground beside them whose doubt grew: the lower of its two surfaces may be the ground
-/// before.
-Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
-                                 const Eigen::ArrayXXf& growth) {
-  Eigen::ArrayXXi part = parts_of(change, area);
+/// Parts with the ground beside them whose doubt grew: the lower of its two surfaces may be the
+/// ground before.
+Eigen::ArrayXXi with_doubt_beside(Eigen::ArrayXXi part, const Eigen::ArrayXXf& growth) {
   std::vector<Cell> front;
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) != 0) front.push_back(at);
@@ -79,11 +77,11 @@ struct DoubtfulVolume {
 // be it, and points of another time also lie where the scan sees none of its own.
 constexpr double weight_of_new = 3.0;
 
-void add_overlays(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+void add_overlays(const SurfacePair& surfaces, const Eigen::ArrayXXi& parts,
                   DoubtfulVolume& doubt) {
   const Eigen::ArrayXXf of_before = known(surfaces.before.doubt, surfaces.before);
   const Eigen::ArrayXXf of_after = known(surfaces.after.doubt, surfaces.after);
-  const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
+  const Eigen::ArrayXXi part = with_doubt_beside(parts, of_after - of_before);
   const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) == 0) return;
@@ -153,14 +151,14 @@ struct HigherAround {
 };
 
 /// How much of one part is in doubt by points on the ground of another time that were taken for its
-/// surface `upper` [m^3]: amid cells that lie `apart` from that ground, cells whose lowest
-/// point is on it tell the share of such points. Hardly any outlier is there, and on a fine grid
-/// the points of a cell are too few to show two levels.
+/// surface `upper` [m^3]: amid cells that lie `apart` from that ground, cells whose lowest point is
+/// on it tell the share of such points. Hardly any outlier is there, and on a fine grid the points
+/// of a cell are too few to show two levels.
 ///
 /// @param apart  of `upper` over the ground of the other time [m]
 /// @param noise  of a point on either [m]
-double lowered_by_points_of(const Surface& upper, const Eigen::ArrayXXd& apart,
-                            const Eigen::ArrayXXi& parts, int part, double noise) {
+double doubt_by_other_time(const Surface& upper, const Eigen::ArrayXXd& apart,
+                           const Eigen::ArrayXXi& parts, int part, double noise) {
   constexpr double sure = 8.0;    // of the noise: so far apart are cells around; ours
   constexpr double same = 3.0;    // of the noise: points on one surface; ours
   constexpr int amid = 16;        // of the 25: at a straight rim there are 15; ours
@@ -188,18 +186,15 @@ double lowered_by_points_of(const Surface& upper, const Eigen::ArrayXXd& apart,
 
 /// Points of the ground before among those of the soil that lies on it, and of the floor of a hole
 /// among those of the ground before: a scan that holds two times.
-void add_other_times(const SurfacePair& surfaces, const VolumeChange& change,
-                     const AreaChange& area, DoubtfulVolume& doubt) {
-  const Eigen::ArrayXXi parts = parts_of(change, area);
-  const Eigen::ArrayXXd& risen = area.difference.z;
-  const auto noise_beside = [&](const Surface& upper, const Surface& lower) {
-    const double of_lower = scatter_of(lower, parts, 0);  // NaN of ground without points
-    return std::hypot(scatter_of(upper, parts, 0), std::isnan(of_lower) ? 0.0 : of_lower);
+void add_other_times(const SurfacePair& surfaces, const Eigen::ArrayXXi& parts,
+                     const Eigen::ArrayXXd& risen, DoubtfulVolume& doubt) {
+  const double before = scatter_of(surfaces.before, parts, 0);
+  const double after = scatter_of(surfaces.after, parts, 0);
+  const auto with = [](double own, double other) {  // ground without points has none
+    return std::hypot(own, std::isnan(other) ? 0.0 : other);
   };
-  const double soil = lowered_by_points_of(surfaces.after, risen, parts, 1,
-                                           noise_beside(surfaces.after, surfaces.before));
-  const double hole = lowered_by_points_of(surfaces.before, -risen, parts, -1,
-                                           noise_beside(surfaces.before, surfaces.after));
+  const double soil = doubt_by_other_time(surfaces.after, risen, parts, 1, with(after, before));
+  const double hole = doubt_by_other_time(surfaces.before, -risen, parts, -1, with(before, after));
   doubt.soil += soil;
   doubt.hole += hole;
   doubt.in_after += soil;
@@ -221,11 +216,9 @@ std::vector<Warning> warning_of_overlays(const DoubtfulVolume& doubt, const Volu
 }
 
 /// What outliers that are not told from the ground raise.
-void add_outliers(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
-                  DoubtfulVolume& doubt) {
+void add_outliers(const SurfacePair& surfaces, const Eigen::ArrayXXi& part, DoubtfulVolume& doubt) {
   const Eigen::ArrayXXf of_before = known(surfaces.before.outlier_bias, surfaces.before);
   const Eigen::ArrayXXf of_after = known(surfaces.after.outlier_bias, surfaces.after);
-  const Eigen::ArrayXXi part = parts_of(change, area);
   const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) == 0) return;
@@ -263,17 +256,14 @@ bool are_rounded(const std::vector<double>& sorted) {
 
 /// A floor that a limit of heights cuts: cells of the hole whose lowest points lie at one height,
 /// as no noise leaves them. Nothing of rounded heights, which do.
-std::optional<Warning> floor_cut(const SurfacePair& surfaces, const VolumeChange& change,
-                                 const AreaChange& area) {
+std::optional<Warning> floor_cut(const Surface& after, const Eigen::ArrayXXi& part) {
   constexpr std::size_t blunders = 2;    // below the floor; ours
   constexpr std::ptrdiff_t fewest = 20;  // ours
   constexpr double least_noise = 2e-3;   // [m], ours: less hides no volume that counts
   constexpr double edge = 0.25;          // ours, of the noise
   constexpr double floor = 2.0;          // ours, likewise
   constexpr double most = 0.25;  // ours: noise leaves some 0.03 of the cells so near the lowest
-  const Surface& after = surfaces.after;
   if (after.below.size() != after.height.z.size()) return {};
-  const Eigen::ArrayXXi part = parts_of(change, area);
   std::vector<double> lowest;
   for_each_cell(part, [&](Cell at) {
     const double here =
@@ -310,10 +300,11 @@ std::vector<Warning> check_points(const std::vector<const SurfacePair*>& pairs,
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (pairs[i] == nullptr) continue;
     const AreaChange& area = change.areas[i];
-    add_overlays(*pairs[i], change, area, overlays);
-    add_other_times(*pairs[i], change, area, overlays);
-    add_outliers(*pairs[i], change, area, outliers);
-    if (auto cut = floor_cut(*pairs[i], change, area)) floors.push_back(std::move(*cut));
+    const Eigen::ArrayXXi parts = parts_of(change, area);
+    add_overlays(*pairs[i], parts, overlays);
+    add_other_times(*pairs[i], parts, area.difference.z, overlays);
+    add_outliers(*pairs[i], parts, outliers);
+    if (auto cut = floor_cut(pairs[i]->after, parts)) floors.push_back(std::move(*cut));
   }
   std::vector<Warning> found = warning_of_overlays(overlays, change);
   for (const auto& more : {warning_of_outliers(outliers, change), floors}) {
