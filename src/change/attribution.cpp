@@ -105,10 +105,15 @@ double volume_of_kind(const Area& area, ZoneKind kind) {
   return volume;
 }
 
-/// Where nothing rose away from the hole, but the largest rise beside it could hold the dug soil,
-/// that is the heap.
+/// Where nothing rose away from the hole, or too little for a heap and yet all of the soil is
+/// there, the largest rise beside it, if that could hold the dug soil, is the heap.
 void find_heap_beside(Area& area) {
-  if (volume_of_kind(area, ZoneKind::dump) > 0.0) return;
+  const double hole = -volume_of_kind(area, ZoneKind::dig);
+  const double away = volume_of_kind(area, ZoneKind::dump);
+  const double beside = volume_of_kind(area, ZoneKind::spill);
+  const bool is_all_there =
+      away < least_dumped_share * hole && away + beside >= least_bulking * hole;
+  if (away > 0.0 && !is_all_there) return;
   std::size_t largest = area.zones.size();
   for (std::size_t z = 0; z < area.zones.size(); ++z) {
     if (area.kinds[z] != ZoneKind::spill) continue;
@@ -117,7 +122,6 @@ void find_heap_beside(Area& area) {
     }
   }
   if (largest == area.zones.size()) return;
-  const double hole = -volume_of_kind(area, ZoneKind::dig);
   if (area.zones[largest].volume >= least_after_share * hole) area.kinds[largest] = ZoneKind::dump;
 }
 

@@ -16,7 +16,9 @@
 
 namespace excavplan {
 
-constexpr double least_after_share = 0.5;  ///< ours: with less, the heap is not in the scans
+constexpr double least_after_share = 0.5;   ///< ours: with less, the heap is not in the scans
+constexpr double least_bulking = 0.97;      ///< loosest soil keeps its volume; ours: 3 % below that
+constexpr double least_dumped_share = 0.2;  ///< ours: a smaller rise away from the hole is no heap
 
 /// Changes that belong to the dig, and how likely it is that these and no others do.
 struct Combination {

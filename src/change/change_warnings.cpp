@@ -20,12 +20,11 @@ namespace excavplan {
 namespace {
 
 constexpr double least_warned_share = 0.01;  // of what was dug or laid down; less is ignored
+constexpr double least_noted_share = 0.001;  // likewise, beyond the edge of the survey; ours
 constexpr double least_refused_share = 0.1;  // likewise
 constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
 constexpr double least_stable_share = 0.4;   // ours
 constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than any range sensor [m]
-constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
-constexpr double least_bulking = 0.97;       // loosest soil keeps its volume; ours: 3 % below that
 constexpr double largest_bulking = 3.0;      // ours: blocks give about 2
 
 std::string litres_as_m3(double volume) {
@@ -109,11 +108,14 @@ struct SuchZones {
 /// Zones that are cut off or were not seen, of all areas.
 struct DoubtfulZones {
   SuchZones cut;
+  SuchZones nearly_whole;  // cut where next to nothing can be beyond
   SuchZones unseen;
   SuchZones partly_unseen;
 
-  void add(const ZoneSum& zone, bool matters, const ChangeOptions& options) {
-    if (zone.is_cut) cut.add(zone);
+  /// @param total  of all zones of its kind [m^3]
+  void add(const ZoneSum& zone, double total, const ChangeOptions& options) {
+    const bool matters = std::abs(zone.volume) > least_refused_share * total;
+    if (zone.is_cut) add_cut(zone, total);
     const double share = zone.unknown / zone.area;
     const double guessed = zone.volume > 0.0 || share > most_in_shadow
                                ? share
@@ -123,6 +125,13 @@ struct DoubtfulZones {
     } else if (guessed > options.max_unknown_share) {
       partly_unseen.add(zone);
     }
+  }
+
+ private:
+  void add_cut(const ZoneSum& zone, double total) {
+    const bool is_rise = zone.volume > 0.0;
+    if (!is_rise || !(zone.beyond_edge < least_warned_share * total)) return cut.add(zone);
+    if (zone.beyond_edge > least_noted_share * total) nearly_whole.add(zone);
   }
 };
 
@@ -134,7 +143,7 @@ DoubtfulZones doubtful_zones(const std::vector<Area>& areas, const ChangeOptions
       const double total = total_of(change, area.kinds[i]);
       const double volume = std::abs(area.zones[i].volume);
       if (!(volume > least_warned_share * total)) continue;
-      doubtful.add(area.zones[i], volume > least_refused_share * total, options);
+      doubtful.add(area.zones[i], total, options);
     }
   }
   return doubtful;
@@ -148,7 +157,15 @@ void warn_of_doubtful(const DoubtfulZones& zones, const ChangeOptions& options,
                           text_of(*cut.largest) +
                               " reaches the edge of the surveyed ground: its volume may be "
                               "incomplete; scan farther around it, or widen `area`" +
-                              cut.rest());
+                              cut.rest(),
+                          true);
+  } else if (const SuchZones& whole = zones.nearly_whole; whole.count > 0) {
+    warnings.emplace_back(
+        WarningCode::zone_at_border,
+        text_of(*whole.largest) + " thins out at the edge of the surveyed ground: up to " +
+            litres_as_m3(whole.largest->beyond_edge) +
+            " may lie beyond it, which the error of its volume counts" + whole.rest(),
+        false);
   }
   if (const SuchZones& unseen = zones.unseen; unseen.count > 0) {
     warnings.emplace_back(WarningCode::zone_unseen,

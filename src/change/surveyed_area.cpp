@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -151,11 +152,45 @@ void sum_borders(Area& area) {
   }
 }
 
+/// Of a rise at the edge of the survey whether it grows towards it: nothing bounds what is beyond.
+class GrowthAtEdge {
+ public:
+  GrowthAtEdge(const Area& area, Eigen::Index radius) : area_(area), radius_(radius) {}
+
+  void add(Cell at, int zone) {
+    const auto& difference = area_.ground.difference;
+    double sum = 0.0;
+    double count = 0.0;
+    for_each_around(difference, at, radius_, [&](Cell n) {
+      if (area_.ground.zone(n.row, n.col) != zone) return;
+      sum += difference(n.row, n.col);
+      count += 1.0;
+    });
+    growth_ += difference(at.row, at.col) - sum / count;
+    ++cells_;
+  }
+
+  /// By more than the noise of its cells explains.
+  bool is_sure() const {
+    constexpr double explained = 2.0;  // ours: standard deviations
+    return growth_ > explained * area_.ground.noise_sd * std::sqrt(cells_);
+  }
+
+ private:
+  const Area& area_;
+  Eigen::Index radius_;
+  double growth_ = 0.0;
+  double cells_ = 0.0;
+};
+
 /// Volume that may be missing of zones at the edge of the survey: soil that meets the ground by a
 /// gentle slope beyond the edge.
 void sum_beyond_edge(Area& area) {
+  constexpr double inward = 0.25;  // ours: how far the growth of a rise is looked at [m]
   const double cell_size = area.grid.cell_size;
+  const auto radius = static_cast<Eigen::Index>(std::ceil(inward / cell_size));
   std::vector<double> missing(area.zones.size(), 0.0);
+  std::vector<GrowthAtEdge> growth(area.zones.size(), GrowthAtEdge(area, radius));
   const auto& zone = area.ground.zone;
   for_each_cell(zone, [&](Cell at) {
     const int index = zone(at.row, at.col);
@@ -167,8 +202,13 @@ void sum_beyond_edge(Area& area) {
     if (!is_edge) return;
     const double height = area.ground.difference(at.row, at.col);
     missing[static_cast<std::size_t>(index)] += cell_size * 0.5 * height * height / gentle;
+    growth[static_cast<std::size_t>(index)].add(at, index);
   });
-  for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    area.zones[i].holes += std::pow(missing[i], 2);
+    area.zones[i].beyond_edge =
+        growth[i].is_sure() ? std::numeric_limits<double>::infinity() : missing[i];
+  }
 }
 
 /// Error of zones against a wall, whose face is somewhere in cells that were left out: up to half a

@@ -36,6 +36,9 @@ struct ZoneSum {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Rectangle extent;
   bool is_cut = false;
+  /// What of a rise may lie beyond the edge of the survey [m^3]; infinite where it grows towards
+  /// it.
+  double beyond_edge = 0.0;
 
   /// By all that does not touch other zones.
   double variance() const { return noise + holes + faces + thin; }

@@ -756,6 +756,62 @@ TEST(VolumeChange, SoilBeyondTheEdgeOfTheSurveyMayBeAPrismOfTheGentlestSlope) {
   EXPECT_NEAR(std::sqrt(change.errors.holes(2, 2)), prism, 0.02 * prism);
 }
 
+/// What is said of zones at the edge, where one is.
+const Warning* edge_warning(const VolumeChange& change) {
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == WarningCode::zone_at_border) return &warning;
+  }
+  return nullptr;
+}
+
+TEST(VolumeChange, AHeapThatThinsOutAtTheEdgeOfTheSurveyIsWholeButForLitres) {
+  const auto cut_at = [](double x_max) {
+    const Rectangle extent = {0.0, 0.0, x_max, 5.0};
+    return measure_change(flat_ground(extent, 0.05), map_of(whole_dig, extent));
+  };
+  const VolumeChange at_toe = cut_at(9.35);
+  const Warning* const said = edge_warning(at_toe);
+  ASSERT_NE(said, nullptr);
+  EXPECT_FALSE(said->ends_trust) << said->message;
+  EXPECT_NE(said->message.find("up to 0.002 m^3 may lie beyond it"), std::string::npos)
+      << said->message;
+  EXPECT_GT(at_toe.dumped.sd, 0.0015);
+  const VolumeChange at_slope = cut_at(9.15);
+  ASSERT_NE(edge_warning(at_slope), nullptr);
+  EXPECT_TRUE(edge_warning(at_slope)->ends_trust);
+}
+
+TEST(VolumeChange, NothingBoundsSoilThatGrowsTowardsTheEdgeOfTheSurvey) {
+  constexpr Rectangle extent = {0.0, 0.0, 10.0, 5.0};
+  for (const double rise : {0.0, 0.13}) {
+    const auto with_tail = [&](double x, double y) {
+      const bool is_tail = x > 9.2 && std::abs(y - 2.534) < 0.4;
+      return whole_dig(x, y) + (is_tail ? 0.03 + std::max(0.0, rise * (x - 9.6)) : 0.0);
+    };
+    const VolumeChange change =
+        measure_change(flat_ground(extent, 0.05), map_of(with_tail, extent));
+    const Warning* const said = edge_warning(change);
+    EXPECT_EQ(said != nullptr && said->ends_trust, rise > 0.0) << rise;
+  }
+}
+
+TEST(VolumeChange, AHeapAgainstTheHoleIsTheHeapThoughCrumbsLieElsewhere) {
+  constexpr Rectangle extent = {0.0, 0.0, 11.0, 6.0};
+  const auto crumb = [](double x, double y) {
+    return std::max(0.0, (0.2 - std::hypot(x - 8.0, y - 2.5)) * std::tan(35.0 * degree));
+  };
+  const auto beside = [&](double x, double y) {
+    return pit(x, y) + heap_at(x, y, 2.7, 4.0) + crumb(x, y);
+  };
+  const VolumeChange change = measure_change(flat_ground(extent, 0.05), map_of(beside, extent));
+  EXPECT_EQ(count_of(change, "no_dumped_soil"), 0);
+  const double crumbs = 3.141592653589793 / 3.0 * std::pow(0.2, 3) * std::tan(35.0 * degree);
+  EXPECT_NEAR(change.dumped.value, heap_volume + crumbs, 0.01 * heap_volume);
+  const auto k = bulking_factor(change);
+  ASSERT_TRUE(k);
+  EXPECT_NEAR(k->value, (heap_volume + crumbs) / pit_volume, 0.01);
+}
+
 TEST(VolumeChange, MapsThatDoNotFitAreRefused) {
   const auto message = [](const HeightMap& before, const HeightMap& after,
                           const ChangeOptions& options = {}) {

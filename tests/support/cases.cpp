@@ -29,6 +29,12 @@ Eigen::VectorXd drawn_vector(Random& random, Eigen::Index size, double low, doub
   return vector;
 }
 
+Eigen::Vector3d drawn_normals(Random& random) {
+  Eigen::Vector3d normals;
+  for (int axis = 2; axis >= 0; --axis) normals(axis) = random.normal();
+  return normals;
+}
+
 double drawn_number(Random& random) {
   constexpr double special[] = {
       0.0, -0.0, 1.0, 0.1, 9007199254740993.0, 5e-324, std::numeric_limits<double>::max()};

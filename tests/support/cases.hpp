@@ -42,6 +42,9 @@ int drawn_int(Random& random, int least, int most);
 
 Eigen::VectorXd drawn_vector(Random& random, Eigen::Index size, double low, double high);
 
+/// Standard normal in each axis, the last drawn first.
+Eigen::Vector3d drawn_normals(Random& random);
+
 /// A finite number of any magnitude, and now and then a special one.
 double drawn_number(Random& random);
 

@@ -13,6 +13,7 @@
 #include <excavplan/simulation/simulators.hpp>
 
 #include "base/angles.hpp"
+#include "support/cases.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -155,9 +156,7 @@ std::shared_ptr<const Cloud> DigSeries::scan() {
     const double x = random_.uniform(extent.x_min, extent.x_max);
     const double y = random_.uniform(extent.y_min, extent.y_max);
     const double z = height_at(surface, x, y);
-    cloud->points.emplace_back(x + settings_.noise * random_.normal(),
-                               y + settings_.noise * random_.normal(),
-                               z + settings_.noise * random_.normal());
+    cloud->points.push_back(Eigen::Vector3d(x, y, z) + settings_.noise * drawn_normals(random_));
   }
   cloud->width = cloud->points.size();
   return cloud;

@@ -102,7 +102,8 @@ Shape wire(Random& random, const Vector3d& middle, double turn) {
 }
 
 std::vector<Shape> truck(Random& random, const Vector3d& at, double turn) {
-  const Vector3d size(random.uniform(4.0, 7.0), 2.5, random.uniform(1.6, 2.8));
+  const double height = random.uniform(1.6, 2.8);
+  const Vector3d size(random.uniform(4.0, 7.0), 2.5, height);
   const Vector3d cab = turned({0.5 * size.x() + 1.0, 0.0, 0.0}, turn);
   return {shape(Shape::Kind::box, "truck", at, size, turn),
           shape(Shape::Kind::box, "cab", at + cab, {1.9, 2.4, 3.0}, turn)};

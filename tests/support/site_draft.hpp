@@ -31,7 +31,8 @@ class Draft {
     bulking = scene.dig.bulking;
     scene.extent.x_max += random.uniform(-0.5, 1.5);
     scene.heap = {dump_offset + random.uniform(-0.2, 0.3), random.uniform(-0.4, 0.4)};
-    ground(random.uniform(0.0, 4.0) * degree, random.uniform(0.0, 0.012));
+    const double roughness = random.uniform(0.0, 0.012);
+    ground(random.uniform(0.0, 4.0) * degree, roughness);
     compose();
   }
 

@@ -9,9 +9,17 @@
 
 namespace excavplan::scenes {
 
+// Draws have statements of their own: compilers differ in the order of arguments.
+
+Eigen::Vector2d place_in(Draft& d, const Rectangle& area) {
+  const double y = d.random.uniform(area.y_min, area.y_max);
+  return {d.random.uniform(area.x_min, area.x_max), y};
+}
+
 void second_heap(Draft& d) {
   const double loose = d.bulking * d.scene.truth.hole;
-  d.add_heap(d.random.uniform(0.08, 0.16) * loose, d.random.uniform(0.8, 2.5));
+  const double away = d.random.uniform(0.8, 2.5);
+  d.add_heap(d.random.uniform(0.08, 0.16) * loose, away);
 }
 
 void add_scrape(Draft& d, Dig scrape) {
@@ -114,11 +122,13 @@ void two_pits(Draft& d) {
 
 void two_pits_two_heaps(Draft& d) {
   two_pits(d);
-  d.add_heap(d.random.uniform(0.35, 0.5) * d.scene.truth.heap, d.random.uniform(0.1, 1.5));
+  const double away = d.random.uniform(0.1, 1.5);
+  d.add_heap(d.random.uniform(0.35, 0.5) * d.scene.truth.heap, away);
 }
 
 void two_heaps_alike(Draft& d) {
-  d.add_heap(d.random.uniform(0.45, 0.55) * d.scene.truth.heap, d.random.uniform(0.1, 1.5));
+  const double away = d.random.uniform(0.1, 1.5);
+  d.add_heap(d.random.uniform(0.45, 0.55) * d.scene.truth.heap, away);
 }
 
 void clods(Draft& d) {
@@ -194,8 +204,9 @@ void crate_on_heap(Draft& d) {
 }
 
 void crate_in_pit(Draft& d) {
+  const double across = d.random.uniform(-0.1, 0.1);
   const Eigen::Vector2d at =
-      d.at_pit(d.random.uniform(-0.25, 0.25) * d.scene.dig.pit_length, d.random.uniform(-0.1, 0.1));
+      d.at_pit(d.random.uniform(-0.25, 0.25) * d.scene.dig.pit_length, across);
   set_down(d, at.x(), at.y());
 }
 
@@ -206,7 +217,8 @@ void fill_pit(Draft& d) {
 }
 
 void water(Draft& d) {
-  d.ground(d.random.uniform(0.0, 3.0) * degree, d.random.uniform(0.01, 0.02));
+  const double roughness = d.random.uniform(0.01, 0.02);
+  d.ground(d.random.uniform(0.0, 3.0) * degree, roughness);
   fill_pit(d);
 }
 
@@ -250,7 +262,8 @@ void heap_at_wall(Draft& d) {
 }
 
 void crate_apart(Draft& d) {
-  set_down(d, d.random.uniform(2.0, 2.8), (d.random.uniform() < 0.5 ? -1.0 : 1.0) * 2.2);
+  const double side = d.random.uniform() < 0.5 ? -1.0 : 1.0;
+  set_down(d, d.random.uniform(2.0, 2.8), side * 2.2);
 }
 
 void steep_ground(Draft& d) { d.ground(d.random.uniform(10.0, 15.0) * degree, 0.01); }
@@ -362,7 +375,8 @@ void strewn_by_wheels(Draft& d) {
 }
 
 void level_floor(Draft& d) {
-  d.ground(d.random.uniform(0.0, 3.0) * degree, d.random.uniform(0.01, 0.02));
+  const double roughness = d.random.uniform(0.01, 0.02);
+  d.ground(d.random.uniform(0.0, 3.0) * degree, roughness);
   const Dig& dig = d.scene.dig;
   d.scene.floor =
       d.scene.ground(dig.pit_x, dig.pit_y) - d.random.uniform(0.7, 0.85) * dig.pit_depth;
@@ -447,9 +461,7 @@ void bucket_rests(Draft& d) {
   bucket.width = d.random.uniform(0.6, 0.9);
   bucket.heading = d.random.uniform(0.0, pi);
   const bool in_pit = d.random.uniform() < 0.4;
-  const Eigen::Vector2d at =
-      in_pit ? d.at_pit(0.0, 0.0)
-             : Eigen::Vector2d(d.random.uniform(1.8, 2.6), d.random.uniform(-1.5, 1.5));
+  const Eigen::Vector2d at = in_pit ? d.at_pit(0.0, 0.0) : place_in(d, {1.8, -1.5, 2.6, 1.5});
   bucket.x = at.x();
   bucket.y = at.y();
   bucket.top = d.scene.after(at.x(), at.y()) + d.random.uniform(0.5, 0.8);
@@ -463,7 +475,7 @@ void crate_before(Draft& d) {
   const bool on_pit = d.random.uniform() < 0.6;
   const Eigen::Vector2d at =
       on_pit ? d.at_pit(d.random.uniform(-0.3, 0.3) * d.scene.dig.pit_length, 0.0)
-             : Eigen::Vector2d(d.random.uniform(2.0, 2.8), d.random.uniform(-2.0, 2.0));
+             : place_in(d, {2.0, -2.0, 2.8, 2.0});
   box.x = at.x();
   box.y = at.y();
   box.length = d.random.uniform(0.4, 0.8);

@@ -142,7 +142,8 @@ void outliers(Draft& d) { d.scene.sampling.outliers = 0.01; }
 
 void outliers_rough(Draft& d) {
   outliers(d);
-  d.ground(d.random.uniform(2.0, 8.0) * degree, d.random.uniform(0.015, 0.025));
+  const double roughness = d.random.uniform(0.015, 0.025);
+  d.ground(d.random.uniform(2.0, 8.0) * degree, roughness);
 }
 
 void outliers_lidars(Draft& d) {

@@ -12,6 +12,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "support/cases.hpp"
+
 namespace excavplan::scenes {
 
 double height_of_cell(const HeightMap& map, double x, double y) {
@@ -103,8 +105,7 @@ std::vector<Disc> unseen_discs(const Rectangle& extent, double share, Random ran
 
 Eigen::Isometry3d random_motion(double shift, double turn, Random random) {
   const auto direction = [&random] {
-    Eigen::Vector3d v(random.normal(), random.normal(), random.normal());
-    return Eigen::Vector3d(v.normalized());
+    return Eigen::Vector3d(test::drawn_normals(random).normalized());
   };
   Eigen::Isometry3d motion(Eigen::AngleAxisd(turn, direction()));
   motion.translation() = shift * direction();
@@ -133,7 +134,7 @@ Points scan(const Dig& dig, Part part, const ScanErrors& errors, std::size_t poi
     if (errors.correlated > 0.0) z += errors.correlated * smooth(x, y);
     Eigen::Vector3d point(x, y, z);
     if (errors.noise > 0.0) {
-      point += errors.noise * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+      point += errors.noise * test::drawn_normals(random);
     }
     if (errors.outliers > 0.0 && random.uniform() < errors.outliers) {
       point.z() += random.uniform(-0.3, 1.0);
