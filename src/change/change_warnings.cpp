@@ -21,6 +21,7 @@ namespace {
 
 constexpr double least_warned_share = 0.01;  // of what was dug or laid down; less is ignored
 constexpr double least_noted_share = 0.001;  // likewise, beyond the edge of the survey; ours
+constexpr double least_cut_share = 0.002;    // likewise, of a rise at the edge; ours
 constexpr double least_refused_share = 0.1;  // likewise
 constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
 constexpr double least_stable_share = 0.4;   // ours
@@ -105,17 +106,14 @@ struct SuchZones {
   }
 };
 
-/// Zones that are cut off or were not seen, of all areas.
+/// Zones that were not seen, of all areas.
 struct DoubtfulZones {
-  SuchZones cut;
-  SuchZones nearly_whole;  // cut where next to nothing can be beyond
   SuchZones unseen;
   SuchZones partly_unseen;
 
   /// @param total  of all zones of its kind [m^3]
   void add(const ZoneSum& zone, double total, const ChangeOptions& options) {
     const bool matters = std::abs(zone.volume) > least_refused_share * total;
-    if (zone.is_cut) add_cut(zone, total);
     const double share = zone.unknown / zone.area;
     const double guessed = zone.volume > 0.0 || share > most_in_shadow
                                ? share
@@ -126,14 +124,51 @@ struct DoubtfulZones {
       partly_unseen.add(zone);
     }
   }
+};
 
- private:
-  void add_cut(const ZoneSum& zone, double total) {
+/// Zones that the edge of the survey cuts off, of all areas.
+struct CutZones {
+  SuchZones zones;
+  bool has_hole = false;
+  double beyond = 0.0;  ///< what of the rises may lie beyond the edge [m^3]
+
+  /// @param total  of all zones of its kind [m^3]
+  void add(const ZoneSum& zone, double total) {
     const bool is_rise = zone.volume > 0.0;
-    if (!is_rise || !(zone.beyond_edge < least_warned_share * total)) return cut.add(zone);
-    if (zone.beyond_edge > least_noted_share * total) nearly_whole.add(zone);
+    const double least = is_rise ? least_cut_share : least_warned_share;
+    if (!zone.is_cut || !(std::abs(zone.volume) > least * total)) return;
+    zones.add(zone);
+    if (is_rise) {
+      beyond += zone.beyond_edge;
+    } else {
+      has_hole = true;
+    }
   }
 };
+
+CutZones cut_zones(const std::vector<Area>& areas, const VolumeChange& change) {
+  CutZones cut;
+  for (const Area& area : areas) {
+    for (std::size_t i = 0; i < area.zones.size(); ++i) {
+      cut.add(area.zones[i], total_of(change, area.kinds[i]));
+    }
+  }
+  return cut;
+}
+
+void warn_of_cut(const CutZones& cut, VolumeChange& change) {
+  if (cut.zones.count == 0) return;
+  const double rose = total_of(change, ZoneKind::dump);
+  const bool is_whole = !cut.has_hole && cut.beyond < least_warned_share * rose;
+  if (is_whole && cut.beyond < least_noted_share * rose) return;
+  const std::string told =
+      is_whole ? " thins out at the edge of the surveyed ground: up to " +
+                     litres_as_m3(cut.beyond) + " may lie beyond, which the error counts"
+               : " reaches the edge of the surveyed ground: its volume may be incomplete; scan "
+                 "farther around it, or widen `area`";
+  change.warnings.emplace_back(WarningCode::zone_at_border,
+                               text_of(*cut.zones.largest) + told + cut.zones.rest(), !is_whole);
+}
 
 DoubtfulZones doubtful_zones(const std::vector<Area>& areas, const ChangeOptions& options,
                              const VolumeChange& change) {
@@ -152,21 +187,6 @@ DoubtfulZones doubtful_zones(const std::vector<Area>& areas, const ChangeOptions
 void warn_of_doubtful(const DoubtfulZones& zones, const ChangeOptions& options,
                       std::vector<Warning>& warnings) {
   const auto limit = [](double share) { return hundredths(100.0 * share) + " %"; };
-  if (const SuchZones& cut = zones.cut; cut.count > 0) {
-    warnings.emplace_back(WarningCode::zone_at_border,
-                          text_of(*cut.largest) +
-                              " reaches the edge of the surveyed ground: its volume may be "
-                              "incomplete; scan farther around it, or widen `area`" +
-                              cut.rest(),
-                          true);
-  } else if (const SuchZones& whole = zones.nearly_whole; whole.count > 0) {
-    warnings.emplace_back(
-        WarningCode::zone_at_border,
-        text_of(*whole.largest) + " thins out at the edge of the surveyed ground: up to " +
-            litres_as_m3(whole.largest->beyond_edge) +
-            " may lie beyond it, which the error of its volume counts" + whole.rest(),
-        false);
-  }
   if (const SuchZones& unseen = zones.unseen; unseen.count > 0) {
     warnings.emplace_back(WarningCode::zone_unseen,
                           text_of(*unseen.largest) + " was seen by no scan in " +
@@ -432,6 +452,7 @@ void warn_of_zones(const std::vector<Area>& areas, const ChangeOptions& options,
                    VolumeChange& change) {
   warn_of_others(areas, change);
   warn_of_slide(areas.front(), change);
+  warn_of_cut(cut_zones(areas, change), change);
   warn_of_doubtful(doubtful_zones(areas, options, change), options, change.warnings);
 }
 

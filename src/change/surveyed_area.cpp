@@ -24,7 +24,7 @@ namespace excavplan {
 namespace {
 
 constexpr Eigen::Index fewest_known_cells = 100;
-constexpr double gentle = 0.5;  // ours: soil beyond the edge of a scan lies steeper [-]
+constexpr double gentle = 0.5;  // ours: unseen soil beyond the edge of a scan lies steeper [-]
 constexpr double steep_face =
     1.0;  // ours: on gentler faces the cells are averages of enough points [-]
 /// Error of the position of a steep face in a lattice of points, as a share of its spacing and the
@@ -152,62 +152,112 @@ void sum_borders(Area& area) {
   }
 }
 
-/// Of a rise at the edge of the survey whether it grows towards it: nothing bounds what is beyond.
-class GrowthAtEdge {
+/// Soil of rises beyond the edge of the survey, by how they fall towards it.
+class BeyondEdge {
  public:
-  GrowthAtEdge(const Area& area, Eigen::Index radius) : area_(area), radius_(radius) {}
-
-  void add(Cell at, int zone) {
-    const auto& difference = area_.ground.difference;
-    double sum = 0.0;
-    double count = 0.0;
-    for_each_around(difference, at, radius_, [&](Cell n) {
-      if (area_.ground.zone(n.row, n.col) != zone) return;
-      sum += difference(n.row, n.col);
-      count += 1.0;
-    });
-    growth_ += difference(at.row, at.col) - sum / count;
-    ++cells_;
+  explicit BeyondEdge(const Area& area) : area_(area), z_(area.ground.difference) {
+    const double of_mean = area.noise.white / 9.0 + area.noise.correlated;
+    least_ = sure_by * std::sqrt(of_mean);
   }
 
-  /// By more than the noise of its cells explains.
-  bool is_sure() const {
-    constexpr double explained = 2.0;  // ours: standard deviations
-    return growth_ > explained * area_.ground.noise_sd * std::sqrt(cells_);
+  bool is_edge(Cell at) const {
+    bool edge = on_border(z_, at);
+    for_each_neighbour(z_, at, [&](Cell n) { edge = edge || is_beyond(n); });
+    return edge;
+  }
+
+  /// Twice a face as steep as the soil is between the height near the edge and twice that; infinite
+  /// where it does not fall so, or was not seen [m^3].
+  double volume_at(Cell edge) const {
+    const Cell inward = inward_of(edge);
+    if (inward.row == 0 && inward.col == 0) return unbounded;
+    const double cell = area_.grid.cell_size;
+    const double step = cell * std::hypot(inward.row, inward.col);
+    const auto mean_at = [&](Eigen::Index steps) {
+      return mean_of_seen({edge.row + steps * inward.row, edge.col + steps * inward.col});
+    };
+    const double at_edge = mean_at(0);
+    const double height = std::fmax(at_edge, mean_at(off_rim));
+    if (height < least_) return 0.0;
+    const auto most = static_cast<Eigen::Index>(height / gentlest / step) + 2;
+    for (Eigen::Index i = 1; i <= most; ++i) {
+      const double there = mean_at(off_rim + i);
+      if (std::isnan(at_edge + there)) return unbounded;
+      const double run = step * static_cast<double>(i);
+      if (there >= 2.0 * height) return cell * at_edge * at_edge * run / height;
+    }
+    return unbounded;
   }
 
  private:
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
+  static constexpr double sure_by = 2.0;      // ours: standard deviations of a mean
+  static constexpr double gentlest = 0.35;    // ours: loose soil lies at 28 degrees or steeper
+  static constexpr Eigen::Index off_rim = 2;  // cells: those at the edge are seen in part
+
+  bool is_inside(Cell at) const {
+    return at.row >= 0 && at.col >= 0 && at.row < z_.rows() && at.col < z_.cols();
+  }
+  bool is_beyond(Cell at) const { return !is_inside(at) || std::isnan(z_(at.row, at.col)); }
+
+  /// Away from what is beyond, to one of eight cells around; 0 where that is on all sides alike.
+  Cell inward_of(Cell at) const {
+    Cell sum = {0, 0};
+    for (Eigen::Index row = -1; row <= 1; ++row) {
+      for (Eigen::Index col = -1; col <= 1; ++col) {
+        if (!is_beyond({at.row + row, at.col + col})) continue;
+        sum.row -= row;
+        sum.col -= col;
+      }
+    }
+    const auto most = std::max(std::abs(sum.row), std::abs(sum.col));
+    const auto direction = [&](Eigen::Index part) {
+      return 2 * std::abs(part) <= most ? 0 : part > 0 ? 1 : -1;
+    };
+    return {direction(sum.row), direction(sum.col)};
+  }
+
+  /// Of nine cells [m]; NaN where none was seen.
+  double mean_of_seen(Cell at) const {
+    if (!is_inside(at)) return std::nan("");
+    double sum = 0.0;
+    double count = 0.0;
+    for_each_around(z_, at, 1, [&](Cell n) {
+      if (is_beyond(n) || area_.unknown(n.row, n.col) != 0) return;
+      sum += z_(n.row, n.col);
+      count += 1.0;
+    });
+    return sum / count;
+  }
+
   const Area& area_;
-  Eigen::Index radius_;
-  double growth_ = 0.0;
-  double cells_ = 0.0;
+  const Eigen::ArrayXXd& z_;
+  double least_ = 0.0;  // heights below are noise [m]
 };
 
-/// Volume that may be missing of zones at the edge of the survey: soil that meets the ground by a
-/// gentle slope beyond the edge.
+/// Volume that may be missing of zones at the edge of the survey: soil that goes on as it falls
+/// there, or where that is not seen meets the ground by a gentle slope.
 void sum_beyond_edge(Area& area) {
-  constexpr double inward = 0.25;  // ours: how far the growth of a rise is looked at [m]
   const double cell_size = area.grid.cell_size;
-  const auto radius = static_cast<Eigen::Index>(std::ceil(inward / cell_size));
   std::vector<double> missing(area.zones.size(), 0.0);
-  std::vector<GrowthAtEdge> growth(area.zones.size(), GrowthAtEdge(area, radius));
+  std::vector<bool> has_edge(area.zones.size(), false);
   const auto& zone = area.ground.zone;
+  const BeyondEdge beyond(area);
   for_each_cell(zone, [&](Cell at) {
-    const int index = zone(at.row, at.col);
-    if (index < 0 || !area.zones[static_cast<std::size_t>(index)].is_cut) return;
-    bool is_edge = on_border(zone, at);
-    for_each_neighbour(zone, at, [&](Cell n) {
-      is_edge = is_edge || std::isnan(area.ground.difference(n.row, n.col));
-    });
-    if (!is_edge) return;
+    if (zone(at.row, at.col) < 0) return;
+    const auto index = static_cast<std::size_t>(zone(at.row, at.col));
+    if (!area.zones[index].is_cut || !beyond.is_edge(at)) return;
     const double height = area.ground.difference(at.row, at.col);
-    missing[static_cast<std::size_t>(index)] += cell_size * 0.5 * height * height / gentle;
-    growth[static_cast<std::size_t>(index)].add(at, index);
+    const double told = area.zones[index].volume > 0.0 ? beyond.volume_at(at)
+                                                       : std::numeric_limits<double>::infinity();
+    has_edge[index] = true;
+    area.zones[index].beyond_edge += told;
+    missing[index] += std::isfinite(told) ? told : cell_size * 0.5 * height * height / gentle;
   });
   for (std::size_t i = 0; i < missing.size(); ++i) {
     area.zones[i].holes += std::pow(missing[i], 2);
-    area.zones[i].beyond_edge =
-        growth[i].is_sure() ? std::numeric_limits<double>::infinity() : missing[i];
+    if (area.zones[i].is_cut && !has_edge[i])
+      area.zones[i].beyond_edge = std::numeric_limits<double>::infinity();
   }
 }
 

@@ -678,7 +678,6 @@ TEST(BadMeaning, TheMeasuredPair) {
                      "no_hole_found",
                      "scans_do_not_fit",
                      "registration_beyond_prior",
-                     "-unit",
                      "z is not up",
                      "attribution_open",
                      "zone_at_border",
@@ -729,7 +728,7 @@ TEST(BadMeaning, DepthImages) {
              seen_by([](const Vector3d& p) { return Vector3d(0.5 * p.x(), p.y(), p.z()); }),
              {"tilted"}, may_be_right);
   add_camera("depths ten times too small", depth_to([](double z) { return 0.1 * z; }),
-             {"units", "-unit", "frame"});
+             {"units", "frame"});
   add_camera("depths ten times too large", depth_to([](double z) { return 10.0 * z; }),
              {"units", "zone_partly_unseen"}, may_be_right);
   add_camera("depths inverted", depth_to([](double z) { return 12.0 - z; }),
