@@ -26,7 +26,7 @@ using test::TempFolder;
 
 void put(string& bytes, std::size_t at, std::uint64_t value, std::size_t size) {
   ASSERT_LE(at + size, bytes.size());
-  for (std::size_t k = 0; k < size; ++k) bytes[at + k] = static_cast<char>(value >> 8 * k);
+  for (std::size_t k = 0; k < size; ++k, value >>= 8) bytes[at + k] = static_cast<char>(value);
 }
 
 std::uint64_t get(const string& bytes, std::size_t at, std::size_t size) {
