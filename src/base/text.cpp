@@ -130,7 +130,9 @@ std::string readable(double value, int digits) {
 }
 
 std::string readable(double value, double sd) {
-  if (!std::isfinite(sd) || sd < negligible) return readable(value);
+  constexpr double of_value = 1e-5;  // less says nothing
+  if (!std::isfinite(sd) || sd < std::max(negligible, of_value * std::abs(value)))
+    return readable(value);
   if (is_long(value) || is_long(sd)) return readable(value) + " ± " + readable(sd, 2);
   const std::string deviation = readable(sd, 2);
   const std::size_t point = deviation.find('.');

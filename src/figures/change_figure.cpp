@@ -183,13 +183,14 @@ Eigen::Vector2d inside_of(const AreaChange& area, int zone) {
   return {area.difference.x(col), area.difference.y(row)};
 }
 
-/// Names a zone with its volume; of several spills the largest.
+/// Names a zone with its volume; the largest of several spills with that of all spill.
 void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index,
                 const Turn& turn) {
   const ChangeZone& zone = change.zones[static_cast<std::size_t>(index)];
   if (zone.kind == ZoneKind::spill && !is_largest_of_its_kind(zone, change)) return;
+  const Measured& volume = zone.kind == ZoneKind::spill ? change.spilled : zone.volume;
   panel.label(turn(inside_of(area, index)),
-              std::string(style_of(zone.kind).name) + ' ' + volume_text(zone.volume));
+              std::string(style_of(zone.kind).name) + ' ' + volume_text(volume));
 }
 
 Rectangle joined(const Rectangle& a, const Rectangle& b) {

@@ -73,15 +73,13 @@ void draw_reached(Panel& panel, const Machine& machine, const Grid& grid) {
 }
 
 /// The furthest, lowest and highest places with what a data sheet calls them.
-void label_reach(Panel& panel, const Machine& machine, const Points& outline) {
-  const Reach reach = reach_of(machine);
-  const auto [lowest, highest] = std::minmax_element(
-      outline.begin(), outline.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
+void label_reach(Panel& panel, const Reach& reach) {
   if (reach.ground > 0.0) {
     panel.label({reach.ground, 0.0}, "reach on the ground " + readable(reach.ground) + " m");
   }
-  if (reach.depth > 0.0) panel.label(*lowest, "digging depth " + readable(reach.depth) + " m");
-  panel.label(*highest, "cutting height " + readable(reach.height) + " m");
+  if (reach.depth > 0.0)
+    panel.label(reach.deepest, "digging depth " + readable(reach.depth) + " m");
+  panel.label(reach.highest, "cutting height " + readable(reach.height) + " m");
 }
 
 Rectangle box_of(const Points& points) {
@@ -117,7 +115,10 @@ std::string held_text(const Machine& machine) {
 
 Figure reach_figure(const Machine& machine) {
   const Points outline = reach_outline(machine);
-  const Rectangle all = box_of(outline);
+  const Reach reach = reach_of(machine);
+  Points farthest = outline;
+  farthest.insert(farthest.end(), {reach.deepest, reach.highest});
+  const Rectangle all = box_of(farthest);
   const Grid grid = force_grid(machine, all);
   double most = 0.0;
   for (const double force : grid.z.reshaped()) {
@@ -132,7 +133,7 @@ Figure reach_figure(const Machine& machine) {
   const MachineOutline drawn = machine_outline(machine, shown_posture(machine));
   draw_machine(panel, drawn);
   panel.line(drawn.bucket, {"#222222", 1.3});
-  label_reach(panel, machine, outline);
+  label_reach(panel, reach);
   const double tail = box_of(drawn.house).x_min;
   const double room = 0.03 * (all.x_max - all.x_min);
   panel.view(

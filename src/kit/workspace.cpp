@@ -27,10 +27,11 @@ double at(const JointLimits& limits, int step) {
   return limits.lower + (limits.upper - limits.lower) * step / steps;
 }
 
-/// The largest of sin over a range of directions.
-double highest_sine(double from, double to) {
+/// That of a range of directions which points up most.
+double most_upright(double from, double to) {
   const double up = 0.5 * pi + 2.0 * pi * std::ceil((from - 0.5 * pi) / (2.0 * pi));
-  return up <= to ? 1.0 : std::max(std::sin(from), std::sin(to));
+  if (up <= to) return up;
+  return std::sin(from) > std::sin(to) ? from : to;
 }
 
 /// Boom and tip as one arm: the tip turns about the boom pin.
@@ -49,8 +50,19 @@ Turning turning(const Machine& machine, double arm, double bucket) {
 
 void extend(Reach& reach, const Machine& machine, const Turning& tip) {
   const double pin = machine.boom_pin.y();
-  reach.height = std::max(reach.height, pin + tip.radius * highest_sine(tip.from, tip.to));
-  reach.depth = std::max(reach.depth, tip.radius * highest_sine(-tip.to, -tip.from) - pin);
+  const auto place = [&](double turned) -> Vector2d {
+    return machine.boom_pin + tip.radius * Vector2d(std::cos(turned), std::sin(turned));
+  };
+  const Vector2d highest = place(most_upright(tip.from, tip.to));
+  const Vector2d deepest = place(-most_upright(-tip.to, -tip.from));
+  if (highest.y() > reach.height) {
+    reach.height = highest.y();
+    reach.highest = highest;
+  }
+  if (-deepest.y() > reach.depth) {
+    reach.depth = -deepest.y();
+    reach.deepest = deepest;
+  }
   if (tip.radius < std::abs(pin)) return;
   const double to_ground = -std::asin(pin / tip.radius);
   const double turned = tip.from + std::fmod(to_ground - tip.from + 4.0 * pi, 2.0 * pi);
@@ -178,7 +190,8 @@ void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& shee
 
 Reach reach_of(const Machine& machine) {
   require_machine(machine);
-  Reach reach{0.0, -infinity, -infinity};
+  Reach reach;
+  reach.depth = reach.height = -infinity;
   for (int arm = 0; arm <= steps; ++arm) {
     for (int bucket = 0; bucket <= steps; ++bucket) {
       extend(reach, machine,

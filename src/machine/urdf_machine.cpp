@@ -240,9 +240,10 @@ void refuse_doubles(const json& urdf, const Side& side) {
   const std::set<string> stated = keys_of(side.numbers);
   for (const string& key : keys_of(urdf)) {
     if (key.rfind("geometry.", 0) != 0 || stated.count(key) == 0) continue;
-    throw Error(
-        ErrorKind::bad_file,
-        side.file + ": " + key + ": found it here and in the URDF, expected it in the URDF");
+    throw Error(ErrorKind::bad_file,
+                side.file + ": " + key +
+                    ": found it here and in the URDF, expected it in the URDF, as this file "
+                    "beside it is read for what it lacks");
   }
 }
 

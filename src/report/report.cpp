@@ -26,8 +26,9 @@ std::string verdict(const Report& report, const ReportedRun& run) {
   if (!run.trustworthy) {
     return shown("bad", "Do not trust this result.", "The reason is among the warnings below.");
   }
-  if (!report.state.empty())
-    return shown(report.is_done ? "good" : "fair", html(report.state), warnings);
+  if (!report.state.empty()) {  // its steps have warnings of their own
+    return shown(report.is_done ? "good" : "fair", html(report.state), count == 0 ? "" : warnings);
+  }
   if (run.judged) return shown("good", "Trustworthy.", warnings);
   return shown(count == 0 ? "good" : "fair", "Done.", warnings);
 }

@@ -334,6 +334,12 @@ std::optional<Warning> check_no_data(const ScanOutline& seen, const Scan& scan) 
                  false};
 }
 
+std::optional<Warning> check_outline(const ScanOutline& seen, const Scan& scan) {
+  auto units = doubt_of_extent(*seen.extent, seen.density, scan.unit);
+  if (units) units->message = name_of(scan) + ": " + units->message;
+  return units ? units : not_up(seen, scan);
+}
+
 std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   std::vector<Warning> found = pair.scans.before.doubts;
   found.insert(found.end(), pair.scans.after.doubts.begin(), pair.scans.after.doubts.end());

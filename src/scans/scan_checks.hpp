@@ -22,6 +22,10 @@ namespace excavplan {
 /// Code `outliers`, which does not end trust: points that hold no data were left out.
 std::optional<Warning> check_no_data(const ScanOutline& seen, const Scan& scan);
 
+/// Codes `units` (too small, or too wide for so few points) or `frame` (a camera's, or z is not up)
+/// of one scan, both of which end trust.
+std::optional<Warning> check_outline(const ScanOutline& seen, const Scan& scan);
+
 /// Codes `units` (too small, or one scan in other units than the other), `coarse_heights` (rounded
 /// to more than 2 cm) and `frame` (a camera's, or z is not up), all of which end trust.
 std::vector<Warning> check_outlines(const OutlinedPair& pair);

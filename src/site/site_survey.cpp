@@ -11,6 +11,7 @@
 
 #include "ground/grid_cells.hpp"
 #include "scans/return_gaps.hpp"
+#include "scans/scan_checks.hpp"
 #include "scans/scan_pairs.hpp"
 #include "scans/scan_reading.hpp"
 #include "site/site_grid.hpp"
@@ -21,10 +22,23 @@ namespace {
 
 constexpr double first_sd = 0.005;  // ours: of ground that was scanned once [m]
 
-Rectangle extent_of(const Scan& scan, unsigned threads) {
+/// Where a scan lies, and whether it can be in the unit and frame that it is taken for.
+struct ScanPlace {
+  Rectangle extent;
+  std::vector<Warning> doubts;
+};
+
+ScanPlace place_of(const Scan& scan, unsigned threads) {
   const ScanOutline seen = outlines({scan}, threads).front();
-  if (seen.extent) return *seen.extent;
-  throw Error(ErrorKind::bad_file, name_of(scan) + ": has no finite points");
+  if (!seen.extent) throw Error(ErrorKind::bad_file, name_of(scan) + ": has no finite points");
+  ScanPlace place = {*seen.extent, {}};
+  if (auto doubt = check_outline(seen, scan)) place.doubts.push_back(std::move(*doubt));
+  return place;
+}
+
+/// Ground about the scan, what is wide for its unit told as such.
+GroundState grown_to(const ScanPlace& place, const GroundState& ground, double void_ratio) {
+  return with_doubts(place.doubts, [&] { return grown(ground, place.extent, void_ratio); });
 }
 
 /// That holds the rectangle in another frame.
@@ -78,7 +92,8 @@ void hold_void_ratios(const SoilKind& soil, Eigen::ArrayXXd& ratios) {
 /// False of a scan of another place, or in another frame.
 bool fits_ground(const DensityEstimate& estimate, bool dug) {
   return std::none_of(estimate.warnings.begin(), estimate.warnings.end(), [&](const Warning& each) {
-    const bool is_of_place = each.code == WarningCode::scans_do_not_fit ||
+    const bool is_of_place = each.code == WarningCode::frame ||
+                             each.code == WarningCode::scans_do_not_fit ||
                              each.code == WarningCode::registration_beyond_prior ||
                              (dug && each.code == WarningCode::looks_swapped);
     return is_of_place && each.ends_trust;
@@ -151,7 +166,11 @@ Mask returns_in(const Scan& scan, const HeightMap& grid) {
 GroundState first_ground(const Scan& scan, double time, const SiteSettings& settings,
                          std::vector<Warning>& warnings) {
   const double fresh = settings.soil.void_ratio_loose;
-  GroundState ground = unseen_ground(extent_of(scan, 0), *settings.cell_size, fresh);
+  const ScanPlace place = place_of(scan, 0);
+  // All later scans are compared with the first one.
+  if (!place.doubts.empty())
+    throw Error(ErrorKind::bad_file, "the first scan of the site: " + place.doubts.front().message);
+  GroundState ground = unseen_ground(place.extent, *settings.cell_size, fresh);
   const HeightMap& grid = ground.terrain.bank;
   ScannedTerrain scanned = terrain_from_scan(scan, grid.extent(), grid.cell_size);
   Terrain seen = std::move(scanned.terrain);
@@ -167,8 +186,8 @@ GroundState first_ground(const Scan& scan, double time, const SiteSettings& sett
 
 SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
                        const GroundState& before) {
-  const Rectangle extent = extent_of(event.scan, event.options.threads);
-  GroundState ground = grown(before, extent, settings.soil.void_ratio_loose);
+  const ScanPlace place = place_of(event.scan, event.options.threads);
+  GroundState ground = grown_to(place, before, settings.soil.void_ratio_loose);
   SurveyedEvent result;
   const bool is_apart = event.dug && event.options.dug_path && !event.base.is_origin();
   SiteEvent in_site = event;
@@ -187,8 +206,8 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
   if (result.fits) {
     result.ground = std::move(*estimate.ground_after);
     const auto& moved_by = estimate.registration;
-    add_new_ground(moved_by ? corrected(event.scan, moved_by->correction) : event.scan, extent,
-                   event.time, result.ground);
+    add_new_ground(moved_by ? corrected(event.scan, moved_by->correction) : event.scan,
+                   place.extent, event.time, result.ground);
     if (is_apart) estimate = estimate_at_machine(event, settings, ground);
   } else {
     result.ground = std::move(ground);

@@ -164,7 +164,8 @@ TEST_F(Urdf, TakesTheRestFromTheJsonBesideIt) {
   beside["geometry"]["boom_length_m"] = 4.6;
   const std::string path = folder.file("digger.json");
   EXPECT_EQ(test::error_about([&] { read(urdf_of(zx120_joints()), beside); }, path),
-            "geometry.boom_length_m: found it here and in the URDF, expected it in the URDF");
+            "geometry.boom_length_m: found it here and in the URDF, expected it in the URDF, as "
+            "this file beside it is read for what it lacks");
 }
 
 TEST_F(Urdf, NamesTheJsonBesideItWhereThatIsWrong) {

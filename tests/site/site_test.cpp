@@ -284,6 +284,31 @@ TEST(SiteDoubts, AScanOfAnotherDatumIsNotTaken) {
   EXPECT_TRUE(site.update(elsewhere).taken);
 }
 
+/// All later scans would be compared with it.
+TEST(SiteDoubts, AScanInAnotherUnitOrFrameBeginsNoSite) {
+  const TemporaryFolder folder;
+  DigsInARow digs;
+  Site site(folder.file("site"), digs.settings(), SiteAccess::write);
+  const auto refused = [&](const SiteEvent& event) {
+    return error_of([&] { site.update(event); }, ErrorKind::bad_file);
+  };
+  for (const double unit : {0.001, 1000.0}) {
+    SiteEvent event = digs.scan();
+    event.scan.unit = unit;
+    EXPECT_NE(refused(event).find("is `unit` that of the coordinates?"), std::string::npos);
+  }
+  SiteEvent tipped = digs.scan();
+  tipped.scan.site_from_scan.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(0.5 * 3.14159265, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_NE(refused(tipped).find("the ground lies at 90 degrees to level"), std::string::npos);
+  EXPECT_TRUE(site.is_empty());
+  site.update(digs.scan());
+  SiteEvent far = digs.scan();
+  far.scan.unit = 1000.0;
+  EXPECT_NE(error_of([&] { site.update(far); }).find("is `unit` that of the coordinates?"),
+            std::string::npos);
+}
+
 TEST(SiteDoubts, ASiteIsOfOneSoilMachineAndLaw) {
   const TemporaryFolder folder;
   DigsInARow digs;

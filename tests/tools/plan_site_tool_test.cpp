@@ -416,7 +416,7 @@ TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
   refuse("--scan", folder.file("none.asc"), "none.asc", 3);
   const std::string cell = folder.file("cell.asc");
   std::ofstream(cell) << "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0.1\n0\n";
-  refuse("--scan", cell, "--scan: rasterise: extent");
+  refuse("--scan", cell, "--scan: " + cell + ": the points spread over 0.00 x 0.00 m", 3);
   refuse("--design", letter, "--design excludes --trench");
   refused(2, "COMMAND: 'nxt' is not one of new|next|done|scan|show|undo|estimate", "plan-site",
           {"nxt", job()});

@@ -257,7 +257,8 @@ TEST(Tool, JsonIsOneObjectAndNanIsNull) {
   EXPECT_EQ(json.at("tool"), "probe");
   EXPECT_EQ(json.at("warnings").at(0).at("code"), "no_dumped_soil");
   EXPECT_EQ(json.at("warnings").at(0).at("ends_trust"), false);
-  EXPECT_EQ(probe.err, "working\nprobe: warning: no dumped soil is in the scans\n");
+  EXPECT_EQ(probe.err,
+            "working\nprobe: warning (no_dumped_soil): no dumped soil is in the scans\n");
 }
 
 TEST(Tool, PeopleGetLinesAndQuietNone) {
@@ -325,7 +326,7 @@ TEST(Tool, ForeignTextCannotSpeakToATerminal) {
   outcome.warnings = {{WarningCode::frame, "frame \033[2J\xc2\x9b and ä"}};
   const Probe probe = run({"a", "--density", "4"}, outcome);
   EXPECT_EQ(probe.out, "topic ?]0;owned?\nNOT TRUSTWORTHY: the warnings say why\n");
-  EXPECT_EQ(probe.err, "working\nprobe: warning (ends trust): frame ?[2J? and ä\n");
+  EXPECT_EQ(probe.err, "working\nprobe: warning (frame, ends trust): frame ?[2J? and ä\n");
   const Probe refused = run({"a", "--density", "4\033[31m"});
   EXPECT_EQ(refused.err.find('\033'), std::string::npos) << refused.err;
 }

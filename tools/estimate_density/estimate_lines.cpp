@@ -73,8 +73,7 @@ void add_density(const DensityEstimate& estimate, std::vector<std::string>& line
   lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
                   readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
                   " %");
-  lines.push_back("law        " + estimate.law.name +
-                  (estimate.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
+  lines.push_back("law        " + estimate.law.name);
   if (estimate.any_soil) lines.push_back("in soils   " + soils_text(estimate));
   lines.emplace_back("holds for  ground near this hole that is of the same soil");
   const double bias = estimate.density_without_fallback - d.raw_percent;

@@ -30,7 +30,12 @@ Measured measured_of(const std::string& option, const std::string& text, Quantit
 
 Measured mass_of(const std::string& text) {
   Measured mass = measured_of("--payload-mass", text, Quantity::mass);
+  constexpr double least = 1.0;  // ours: of a bucket of soil [kg]
   if (!(mass.value > 0.0)) usage_error("--payload-mass: must be above 0");
+  if (mass.value < least) {
+    usage_error("--payload-mass: " + number_text(mass.value) +
+                " kg is no bucket of soil: is it in kg, not t?");
+  }
   if (mass.sd < 0.0) mass.sd = usual_mass_error * mass.value;
   return mass;
 }

@@ -100,8 +100,9 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
                    const StandardInput& input) {
   if (!common.quiet) {
     for (const Warning& warning : outcome.warnings) {
-      const char* kind = warning.ends_trust ? ": warning (ends trust): " : ": warning: ";
-      std::cerr << about.name << kind << shown(input, warning.message) << '\n';
+      std::cerr << about.name << ": warning (" << code_text(warning.code)
+                << (warning.ends_trust ? ", ends trust): " : "): ") << shown(input, warning.message)
+                << '\n';
     }
   }
   std::string text;
@@ -138,6 +139,18 @@ void settle_trust(Outcome& outcome) {
   if (std::none_of(outcome.lines.begin(), outcome.lines.end(), says)) {
     outcome.lines.emplace_back("NOT TRUSTWORTHY: the warnings say why");
   }
+}
+
+/// What several parts of a work said alike, once.
+void drop_doubles(std::vector<Warning>& warnings) {
+  std::vector<Warning> kept;
+  for (Warning& each : warnings) {
+    const auto is_alike = [&](const Warning& other) {
+      return other.code == each.code && other.message == each.message;
+    };
+    if (std::none_of(kept.begin(), kept.end(), is_alike)) kept.push_back(std::move(each));
+  }
+  warnings = std::move(kept);
 }
 
 /// Options without effect, and in every tool that has --machine what the files of machines are not
@@ -219,6 +232,7 @@ int run(const CommandWords& command, const About& about,
     return with_options(arguments.entries(), [&] { return work(console); });
   });
   add_option_warnings(arguments.entries(), words, outcome);
+  drop_doubles(outcome.warnings);
   if (about.can_be_untrustworthy) settle_trust(outcome);
   console.clear();
   if (outcome.page) {

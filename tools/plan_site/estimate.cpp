@@ -3,6 +3,7 @@
 #include "plan_site/estimate.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/design/cut_and_fill.hpp>
@@ -16,6 +17,7 @@
 #include "plan_site/job_lines.hpp"
 #include "report/job_report.hpp"
 #include "results/plan_results.hpp"
+#include "soil/density_doubt.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -88,6 +90,8 @@ Outcome work_estimate(const JobInputs& inputs, Console& console) {
   outcome.lines = estimate_lines(estimate, job, cost);
   outcome.trustworthy = estimate.trustworthy();
   add_walls(cut, job.density, outcome);
+  if (auto doubt = doubt_of_density(job.density.percent))
+    outcome.warnings.push_back(std::move(*doubt));
   if (inputs.report) {
     outcome.page =
         page_of(estimate_report(estimate, cost,

@@ -17,6 +17,7 @@
 #include "inputs/named_kinds.hpp"
 #include "inputs/site_folder.hpp"
 #include "inputs/unit_inputs.hpp"
+#include "scans/scan_checks.hpp"
 #include "scans/scan_reading.hpp"
 
 namespace excavplan::tools {
@@ -60,6 +61,9 @@ Surface surface_of(const Scan& scan, const Machine& machine) {
   const ScanOutline seen = outline(scan);
   if (!seen.extent) {
     throw Error(ErrorKind::bad_file, "--scan: " + name_of(scan) + " holds no finite point");
+  }
+  if (const auto doubt = check_outline(seen, scan)) {
+    throw Error(ErrorKind::bad_file, "--scan: " + doubt->message);
   }
   RasterOptions options;
   options.cell_size = std::max(usual_cell(machine), survey_cell({seen}));

@@ -18,6 +18,7 @@
 #include "simulate_dig/block_inputs.hpp"
 #include "simulate_dig/scene_files.hpp"
 #include "simulate_dig/scene_lines.hpp"
+#include "soil/density_doubt.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -128,6 +129,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.lines.insert(outcome.lines.begin(), lines.begin(), lines.end());
   if (given) describe(inputs.ground, *given, outcome);
   outcome.warnings = std::move(site.warnings);
+  if (auto doubt = doubt_of_density(inputs.density)) outcome.warnings.push_back(std::move(*doubt));
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   inputs.terrain.scans->add_to(outcome);
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);

@@ -21,6 +21,8 @@ struct Reach {
   double ground = 0.0;  ///< x of the furthest point on the ground; 0: it does not reach the ground
   double depth = 0.0;   ///< below the ground; negative: its lowest point is above it
   double height = 0.0;  ///< above the ground
+  Eigen::Vector2d deepest = Eigen::Vector2d::Zero();  ///< where that is: x, z [m]
+  Eigen::Vector2d highest = Eigen::Vector2d::Zero();  ///< likewise
 };
 
 /// @throws Error (bad_input) as require_machine()
