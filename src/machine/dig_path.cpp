@@ -119,8 +119,7 @@ std::optional<Infeasible> find_bad_parameter(const DigParameters& parameters, do
   if (!(angle > 0.0 && angle < pi / 2.0)) {
     return bad_parameter(
         DigPhase::penetrate, angle, angle > 0.0 ? pi / 2.0 : 0.0,
-        "the penetration angle is " + degrees(angle) + ", must be above 0 and below 90 deg" +
-            (angle > 3.0 && angle < 90.0 ? ": is it in rad, or with its unit, as 45deg?" : ""));
+        "the penetration angle is " + degrees(angle) + ", must be above 0 and below 90 deg");
   }
   const std::array<std::tuple<DigPhase, const char*, double>, 2> lengths = {{
       {DigPhase::penetrate, "the penetration length is ", parameters.penetration_length},

@@ -403,14 +403,14 @@ TEST_F(PlanSite, WrongInputsNameKeyAndValue) {
   refuse("--trench", "4x1x200", "depth [m]");
   refuse("--from", "200,0", "no ground is known along it");
   refuse("--heading", "north", "--heading: 'north'");
-  refuse("--heading", "90", "--heading: a heading of 90 rad is more than a turn");
+  refuse("--heading", "90", "--heading: '90' rad is more than a turn");
   refuse("--windrow", "1,2,3,4", "--windrow: '1,2,3,4': its polygon has 2 corners");
   refuse("--truck", "1,2,3,4,5,6:2", "--truck: truck '1,2,3,4,5,6:2': must be POLYGON:HEIGHT:KG");
   refuse("--keep-out", "1,2,3,4,5,9:deep", "--keep-out: depth of a keep-out [m] is 'deep'");
   refuse("--tolerance", "0", "tolerance [m]");
   refuse("--density", "140", "density [%]");
   refuse("--base", "1,2", "--base: '1,2' is not X,Y,HEADING");
-  refuse("--base", "1,2,90", "--base: a heading of 90 rad is more than a turn");
+  refuse("--base", "1,2,90", "--base: '90' rad is more than a turn");
   refuse("--base", "1e300,0,0", "start of the machine [m] is 1e+300");
   refuse("--soil", "peat", "peat");
   refuse("--scan", folder.file("none.asc"), "none.asc", 3);

@@ -32,6 +32,16 @@ TEST(Quantity, BareNumbersAreSi) {
   EXPECT_EQ(parse_quantity("--start", "+3", Quantity::length), 3.0);
 }
 
+TEST(Quantity, DegreesWithoutTheirUnitAreTold) {
+  for (const char* bare : {"45", "-40", "90", "6.3"}) {
+    EXPECT_EQ(test::error_of([&] { parse_quantity("--swing", bare, Quantity::angle); }),
+              "--swing: '" + std::string(bare) +
+                  "' rad is more than a turn; degrees have their unit, as in 45deg");
+  }
+  EXPECT_EQ(parse_quantity("--swing", "6.28", Quantity::angle), 6.28);
+  EXPECT_NEAR(parse_quantity("--swing", "400deg", Quantity::angle), 6.98, 0.01);
+}
+
 TEST(Quantity, UnitsAreConverted) {
   EXPECT_DOUBLE_EQ(parse_quantity("", "45deg", Quantity::angle), std::atan(1.0));
   EXPECT_DOUBLE_EQ(parse_quantity("", "5cm", Quantity::length), 0.05);

@@ -96,6 +96,11 @@ double parse_quantity(const std::string& what, const std::string& text, Quantity
   if (error != std::errc{} || !std::isfinite(value)) refuse("is not a number");
   std::string suffix(stop, end);
   suffix.erase(0, suffix.find_first_not_of(' '));
+  if (suffix.empty() && quantity == Quantity::angle && std::abs(value) > 2.0 * pi) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text +
+                                          "' rad is more than a turn; degrees have their unit, "
+                                          "as in 45deg");
+  }
   if (suffix.empty()) return value;
   if (suffix[0] == ',') refuse("has a comma where decimals follow a point");
   const auto known =

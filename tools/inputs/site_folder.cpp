@@ -18,14 +18,6 @@ void declare_site_folder(Arguments& arguments, SiteFolderInputs& inputs, const s
   });
 }
 
-double within_turn(const std::string& option, double heading) {
-  if (std::abs(heading) > 2.0 * pi) {
-    usage_error(option + ": a heading of " + number_text(heading) +
-                " rad is more than a turn; degrees have their unit, as in 90deg");
-  }
-  return heading;
-}
-
 BasePose parse_base(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   if (parts.size() != 3) {
@@ -33,7 +25,7 @@ BasePose parse_base(const std::string& text) {
   }
   return {parse_quantity("--base", parts[0], Quantity::length),
           parse_quantity("--base", parts[1], Quantity::length), 0.0,
-          within_turn("--base", parse_quantity("--base", parts[2], Quantity::angle))};
+          parse_quantity("--base", parts[2], Quantity::angle)};
 }
 
 BasePose base_of(const SiteFolderInputs& inputs) {

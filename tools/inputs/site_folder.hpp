@@ -23,9 +23,6 @@ struct SiteFolderInputs {
 /// @param what  the tool does with the site
 void declare_site_folder(Arguments& arguments, SiteFolderInputs& inputs, const std::string& what);
 
-/// Refuses degrees without their unit, where they are more than a turn. @return the heading [rad]
-/// @throws Error (bad_input) naming the option
-double within_turn(const std::string& option, double heading);
 
 /// "X,Y,HEADING". @throws Error (bad_input) naming --base
 BasePose parse_base(const std::string& text);

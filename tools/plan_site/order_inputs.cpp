@@ -83,7 +83,7 @@ DesignWords words_of(const OrderInputs& inputs) {
   if (!inputs.from) usage_error("--from is missing: where the trench begins");
   if (!inputs.heading) usage_error("--heading is missing: where the trench goes from there");
   words.from = parse_point("--from", *inputs.from);
-  words.heading = within_turn("--heading", *inputs.heading);
+  words.heading = *inputs.heading;
   return words;
 }
 
