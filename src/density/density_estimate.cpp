@@ -16,11 +16,11 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
-#include "change/cover.hpp"
 #include "density/density_in_soil.hpp"
 #include "density/density_of_volumes.hpp"
 #include "density/known_site.hpp"
 #include "ground/too_few_cells.hpp"
+#include "scans/cover.hpp"
 #include "scans/point_checks.hpp"
 #include "scans/scan_checks.hpp"
 #include "scans/scan_pairs.hpp"

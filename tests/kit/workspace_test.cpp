@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/kit/workspace.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 #include "support/machine_file.hpp"
 
@@ -31,6 +33,17 @@ TEST(Workspace, ReachIsThatOfTheSweep) {
   EXPECT_NEAR(reach.ground, 8.15, 0.01);
   EXPECT_NEAR(reach.depth, 5.52, 0.005);
   EXPECT_NEAR(reach.height, 8.54, 0.005);
+  EXPECT_DOUBLE_EQ(reach.highest.y(), reach.height);
+  EXPECT_DOUBLE_EQ(reach.deepest.y(), -reach.depth);
+  // The front is stretched up with all joints at their lower limits, and down in line.
+  const auto& limits = zx120().limits;
+  const JointAngles up(limits[0].lower, limits[1].lower, limits[2].lower);
+  EXPECT_LT((link_positions(zx120(), up).tip - reach.highest).norm(), 1e-9);
+  double off = 1.0;
+  for (const Eigen::Vector2d& point : reach_outline(zx120())) {
+    off = std::min(off, (point - reach.deepest).norm());
+  }
+  EXPECT_LT(off, 0.1);
 }
 
 TEST(Workspace, ForceIsThatOfTheCatalogueOrOfFriction) {

@@ -47,7 +47,7 @@ const OptionNames library_option_names = [] {
   OptionNames names = {
       {"library: densities", "--densities"},
       {"library: slopes", "--slopes"},
-      cell_option[0],
+      cell_option()[0],
       {"machines x soils x slopes x densities of a library",
        "--machine x --soil x --slopes x --densities"},
       {"points of a library search", "--points"},
@@ -55,7 +55,7 @@ const OptionNames library_option_names = [] {
       {"polish evaluations of a library search", "--polish"},
       {"inherited evaluations of a library search", "--inherited"},
   };
-  names.insert(names.end(), search_option_names.begin(), search_option_names.end());
+  names.insert(names.end(), search_option_names().begin(), search_option_names().end());
   return names;
 }();
 

@@ -85,7 +85,7 @@ DensityCalibration from_simulator(const Inputs& inputs, Console& console) {
   options.path = inputs.path;
   options.draws = inputs.draws;
   options.simulator = simulator_of(inputs.simulator, console);
-  OptionNames names = cell_option;
+  OptionNames names = cell_option();
   names.push_back({"the number of draws", "--draws"});
   return naming_options(names, [&] {
     return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);

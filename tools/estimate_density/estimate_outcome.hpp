@@ -15,7 +15,7 @@ namespace excavplan::tools {
 inline const OptionNames estimate_options = {
     {"path that was dug", "--dug-path"}, {"inside the area", "inside --area"},
     {"cell_size is", "--cell is"},       {"water_content", "--moisture"},
-    {"payload_mass", "--payload-mass"},  cell_option.back()};
+    {"payload_mass", "--payload-mass"},  cell_option().back()};
 
 /// @param soil  what was known of it
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);

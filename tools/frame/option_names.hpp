@@ -13,9 +13,13 @@ namespace excavplan::tools {
 /// What the library calls an input in its messages, and the option that sets it.
 using OptionNames = std::vector<std::pair<std::string, std::string>>;
 
-/// Of functions that take the size of cells.
-inline const OptionNames cell_option = {{"the cell size is", "--cell: the cell size is"},
-                                        {"in cells of", "in cells (--cell) of"}};
+/// Of functions that take the size of cells. Not a constant: others are made of it, and the order
+/// in which constants of several sources are made is not told.
+inline const OptionNames& cell_option() {
+  static const OptionNames names = {{"the cell size is", "--cell: the cell size is"},
+                                    {"in cells of", "in cells (--cell) of"}};
+  return names;
+}
 
 /// A message of the library with the names of options.
 std::string with_option_names(std::string message, const OptionNames& names);

@@ -81,6 +81,15 @@ void declare_evaluations(Arguments& arguments, SearchMethodInputs& inputs,
                    "largest number of simulated digs per search; 0: " + usual);
 }
 
+const OptionNames& search_option_names() {
+  static const OptionNames names = {
+      {"search: population", "--population"},       {"search: generations", "--generations"},
+      {"search: crossover", "--crossover"},         {"search: mutation", "--mutation"},
+      {"search: tournament", "--tournament"},       {"search: elites", "--elites"},
+      {"search: stop.evaluations", "--evaluations"}};
+  return names;
+}
+
 void check(const SearchMethodInputs& inputs) {
   if (inputs.evaluations < 0) {
     usage_error("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");

@@ -35,11 +35,7 @@ void declare_evaluations(Arguments& arguments, SearchMethodInputs& inputs,
                          const std::string& usual);
 
 /// What plan_dig() calls them in its messages.
-inline const OptionNames search_option_names = {
-    {"search: population", "--population"},       {"search: generations", "--generations"},
-    {"search: crossover", "--crossover"},         {"search: mutation", "--mutation"},
-    {"search: tournament", "--tournament"},       {"search: elites", "--elites"},
-    {"search: stop.evaluations", "--evaluations"}};
+const OptionNames& search_option_names();
 
 /// Checks made before anything is read. @throws Error (bad_input)
 void check(const SearchMethodInputs& inputs);

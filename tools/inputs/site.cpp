@@ -84,7 +84,7 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
   require_recording(terrain.scans->options, (terrain.cloud && is_recorded(*terrain.cloud)) ||
                                                 (surroundings && is_recorded(*surroundings)));
-  return naming_options(cell_option, [&] {
+  return naming_options(cell_option(), [&] {
     require_simulated_cell(cell_size);
     if (!terrain.cloud) return Site{undisturbed(flat_ground(extent, cell_size)), {}};
     ScannedTerrain seen = scanned(

@@ -23,7 +23,6 @@ struct SiteFolderInputs {
 /// @param what  the tool does with the site
 void declare_site_folder(Arguments& arguments, SiteFolderInputs& inputs, const std::string& what);
 
-
 /// "X,Y,HEADING". @throws Error (bad_input) naming --base
 BasePose parse_base(const std::string& text);
 

@@ -19,7 +19,7 @@ const OptionNames heap_options = {
     {"; --dig-area and --dump-area take it in, if it belongs to them", ""},
     {"--dig-area and --dump-area", "--area"},
     {"BEFORE and AFTER", "--dump-before and --dump-after"},
-    cell_option.back()};
+    cell_option().back()};
 
 DigEfficiency measure(const RunInputs& inputs, const EfficiencyInputs& all, Outcome& outcome) {
   LoggedDig dig = inputs.dig(all.frames, all.logs);

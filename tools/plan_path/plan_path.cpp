@@ -112,7 +112,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   PlanOptions options = options_of(inputs, machine, soil, console);
   const auto area = ground_to_move_on(inputs.motion, inputs.on, on, machine, options);
   DigPlan plan =
-      naming_options(search_option_names, [&] { return plan_on(on, machine, soil, options); });
+      naming_options(search_option_names(), [&] { return plan_on(on, machine, soil, options); });
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();

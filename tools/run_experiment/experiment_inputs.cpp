@@ -57,8 +57,8 @@ void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
 }
 
 OptionNames experiment_option_names() {
-  OptionNames names = cell_option;
-  names.insert(names.end(), search_option_names.begin(), search_option_names.end());
+  OptionNames names = cell_option();
+  names.insert(names.end(), search_option_names().begin(), search_option_names().end());
   return names;
 }
 

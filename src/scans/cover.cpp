@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "change/cover.hpp"
+#include "scans/cover.hpp"
 
 #include <algorithm>
 #include <cmath>
