@@ -20,6 +20,7 @@
 #include "ground/terrain.hpp"
 #include "sensing/block_heap.hpp"
 #include "simulation/checked_dig.hpp"
+#include "soil/density_doubt.hpp"
 
 namespace excavplan {
 namespace {
@@ -151,6 +152,7 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   scene.density_percent = bank_density_percent(ground, soil, swept_strip(machine, scene.path))
                               .value_or(density_percent);
   if (scene.dumped) scene.warnings = reach_warnings(scene.dump_at, machine);
+  if (auto doubt = doubt_of_density(density_percent)) scene.warnings.push_back(*doubt);
   DigOptions dig;
   dig.history = options.history;
   if (scene.dumped) dig.dump_at = scene.dump_at;

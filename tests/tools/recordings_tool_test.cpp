@@ -178,7 +178,7 @@ TEST_F(Recordings, TheMachineIsWhereItsJointStatesSay) {
   refused(2, "the arm of the machine in the scan stands at -1.2 rad, outside its range", tool,
           {lidar, lidar, "--tf-frame", "map", "--machine-recorded"});
   refused(2, "--machine-recorded needs --tf-frame", tool, {lidar, lidar, "--machine-recorded"});
-  refused(2, "outside its range", tool, {scan, later_scan, "--machine-pose", "0,100,0,0"});
+  refused(2, "outside its range", tool, {scan, later_scan, "--machine-pose", "0,5,0,0"});
   refused(3, "found no topic of sensor_msgs/JointState", tool,
           {dig + ":/merged/points", dig + ":/merged/points@60s", "--machine-recorded", "--tf-frame",
            "site"});

@@ -399,7 +399,7 @@ TEST_F(Tools, SettingsOfBlocksThatAreNotThereAreReported) {
   const Words words = {"--density", "85", "--block-size", "0.3", "--block-swell", "0.5"};
   const ProgramResult result = run_program("simulate-dig", words);
   EXPECT_TRUE(contains(result.err,
-                       "warning: without effect: --block-size, --block-swell; there are no blocks "
+                       "without effect: --block-size, --block-swell; there are no blocks "
                        "without --blocks\n"))
       << result.err;
   EXPECT_FALSE(warns(answer("simulate-dig", words + Words{"--blocks"}), "options_ignored"));

@@ -18,7 +18,6 @@
 #include "simulate_dig/block_inputs.hpp"
 #include "simulate_dig/scene_files.hpp"
 #include "simulate_dig/scene_lines.hpp"
-#include "soil/density_doubt.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -125,11 +124,10 @@ Outcome work(const Inputs& inputs, Console& console) {
       names, [&] { return run_scene(machine, soil, inputs.density, site.ground, options); });
   outcome.json = scene_json(machine, scene);
   outcome.json["wall_time_s"] = watch.seconds();
-  const std::vector<std::string> lines = scene_lines(machine, scene);
+  const auto lines = scene_lines(machine, scene);
   outcome.lines.insert(outcome.lines.begin(), lines.begin(), lines.end());
   if (given) describe(inputs.ground, *given, outcome);
   outcome.warnings = std::move(site.warnings);
-  if (auto doubt = doubt_of_density(inputs.density)) outcome.warnings.push_back(std::move(*doubt));
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   inputs.terrain.scans->add_to(outcome);
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
