@@ -130,7 +130,7 @@ std::string readable(double value, int digits) {
 }
 
 std::string readable(double value, double sd) {
-  constexpr double of_value = 1e-5;  // less says nothing
+  constexpr double of_value = 1e-5;  // less says nothing; ours
   if (!std::isfinite(sd) || sd < std::max(negligible, of_value * std::abs(value)))
     return readable(value);
   if (is_long(value) || is_long(sd)) return readable(value) + " ± " + readable(sd, 2);

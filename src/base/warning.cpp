@@ -44,4 +44,13 @@ bool any_ends_trust(const std::vector<Warning>& warnings) {
                      [](const Warning& each) { return each.ends_trust; });
 }
 
+void add_new(const std::vector<Warning>& more, std::vector<Warning>& warnings) {
+  for (const Warning& warning : more) {
+    const auto same = [&](const Warning& each) {
+      return each.code == warning.code && each.message == warning.message;
+    };
+    if (std::none_of(warnings.begin(), warnings.end(), same)) warnings.push_back(warning);
+  }
+}
+
 }  // namespace excavplan

@@ -178,6 +178,7 @@ class BeyondEdge {
     };
     const double at_edge = mean_at(0);
     const double height = std::fmax(at_edge, mean_at(off_rim));
+    if (std::isnan(height)) return unbounded;
     if (height < least_) return 0.0;
     const auto most = static_cast<Eigen::Index>(height / gentlest / step) + 2;
     for (Eigen::Index i = 1; i <= most; ++i) {
@@ -192,7 +193,7 @@ class BeyondEdge {
  private:
   static constexpr double unbounded = std::numeric_limits<double>::infinity();
   static constexpr double sure_by = 2.0;      // ours: standard deviations of a mean
-  static constexpr double gentlest = 0.35;    // ours: loose soil lies at 28 degrees or steeper
+  static constexpr double gentlest = 0.35;    // ours: 19 degrees, loose soil lies at 28 or steeper
   static constexpr Eigen::Index off_rim = 2;  // cells: those at the edge are seen in part
 
   bool is_inside(Cell at) const {

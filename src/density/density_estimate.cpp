@@ -126,15 +126,6 @@ Surfaces survey(const OutlinedScans& seen, const DensityOptions& options) {
 
 // ---- Height maps to volumes -------------------------------------------------------------------
 
-void append(std::vector<Warning> more, std::vector<Warning>& warnings) {
-  for (Warning& warning : more) {
-    const auto same = [&](const Warning& w) { return w.message == warning.message; };
-    if (std::none_of(warnings.begin(), warnings.end(), same)) {
-      warnings.push_back(std::move(warning));
-    }
-  }
-}
-
 /// Errors of the change are about what the scans show.
 template <typename Measure>
 VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
@@ -239,7 +230,7 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   volumes.of_points = check_points(surfaces.pairs(), change);
   volumes.of_cover = check_cover(surfaces.pairs(), change);
   std::vector<Warning> doubts = volumes.of_points;
-  append(volumes.of_cover, doubts);
+  add_new(volumes.of_cover, doubts);
   for (const Warning& warning : change.warnings) {
     if (warning.code == WarningCode::sensor_place_doubtful) doubts.insert(doubts.begin(), warning);
   }
@@ -262,7 +253,7 @@ VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& sur
 
 std::vector<Warning> doubts_about(const OutlinedScans& seen) {
   std::vector<Warning> doubts = check_outlines(seen.dig);
-  if (seen.dump) append(check_outlines(*seen.dump), doubts);
+  if (seen.dump) add_new(check_outlines(*seen.dump), doubts);
   return doubts;
 }
 
@@ -270,18 +261,18 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
                                   const SurfaceVolumes& volumes) {
   const VolumeChange& change = volumes.change;
   std::vector<Warning> doubts = volumes.of_points;
-  append(check_volumes(change, seen.unit()), doubts);
-  append(check_slopes(surfaces.pairs(), change), doubts);
-  append(check_machine(seen.machine_points(), change), doubts);
+  add_new(check_volumes(change, seen.unit()), doubts);
+  add_new(check_slopes(surfaces.pairs(), change), doubts);
+  add_new(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {
-    append(check_registration(outlined.scans, pair, area), doubts);
-    append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
-    append(check_curvature(pair.surfaces, area), doubts);
+    add_new(check_registration(outlined.scans, pair, area), doubts);
+    add_new(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+    add_new(check_curvature(pair.surfaces, area), doubts);
   };
   check(seen.dig, surfaces.dig, change.areas.front());
   if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
-  append(volumes.of_cover, doubts);
+  add_new(volumes.of_cover, doubts);
   return doubts;
 }
 
@@ -487,7 +478,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     return surface_volumes_of(seen, surfaces, options);
   });
   const VolumeChange& surface = volumes.change;
-  append(doubts_about(seen, surfaces, volumes), doubts);
+  add_new(doubts_about(seen, surfaces, volumes), doubts);
 
   DensityEstimate known;  // whatever the method
   known.fallback =
@@ -509,7 +500,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     // eqs. 3 and 4: volumes before and after
     estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
     estimate.warnings = doubts;  // the causes first
-    append(estimate.change.warnings, estimate.warnings);
+    add_new(estimate.change.warnings, estimate.warnings);
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);

@@ -103,8 +103,8 @@ JointAngles shown_posture(const Machine& machine) {
 }
 
 /// Of the machine on the ground, half as far as it reaches.
-std::string held_text(const Machine& machine) {
-  const double x = 0.5 * reach_of(machine).ground;
+std::string held_text(const Machine& machine, const Reach& reach) {
+  const double x = 0.5 * reach.ground;
   const double held = digging_force(machine, {x, 0.0}).held;
   if (!std::isfinite(held)) return "";
   return " On the ground at x = " + readable(x) + " m the machine lifts or slides above " +
@@ -146,7 +146,7 @@ Figure reach_figure(const Machine& machine) {
   figure.note =
       "Colours: the largest level force towards the machine that the joints give at the tip, with "
       "the floor of the bucket at −10 to 60 deg to the ground." +
-      held_text(machine);
+      held_text(machine, reach);
   return figure;
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/robot/job_session.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -110,13 +109,7 @@ void JobSession::State::add_motion(SessionStep& answer) const {
     }
     const auto& timed = std::get<Trajectory>(motion);
     answer.motion = joint_motion(timed);
-    for (const Warning& each : timed.warnings) {
-      const bool is_told =
-          std::any_of(step.warnings.begin(), step.warnings.end(), [&](const Warning& told) {
-            return told.code == each.code && told.message == each.message;
-          });
-      if (!is_told) step.warnings.push_back(each);
-    }
+    add_new(timed.warnings, step.warnings);
   } catch (const Error& error) {
     refuse(error.what());
   }

@@ -330,6 +330,17 @@ TEST(Tool, WithoutMemoryItSaysSo) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "probe: not enough memory\n");
 }
 
+TEST(Tool, WhatTwoPartsOfAWorkSayAlikeIsToldOnce) {
+  Outcome outcome;
+  const Warning alike(WarningCode::unseen_ground, "the ground at the tracks was not seen");
+  outcome.warnings = {alike, {WarningCode::outliers, alike.message, false}, alike};
+  const Probe probe = run({"a", "--density", "4", "--json"}, outcome);
+  const auto json = nlohmann::ordered_json::parse(probe.out);
+  ASSERT_EQ(json.at("warnings").size(), 2U);
+  EXPECT_EQ(json.at("warnings").at(0).at("code"), "unseen_ground");
+  EXPECT_EQ(json.at("warnings").at(1).at("code"), "outliers");
+}
+
 TEST(Tool, ForeignTextCannotSpeakToATerminal) {
   Outcome outcome;
   outcome.lines = {"topic \033]0;owned\007"};

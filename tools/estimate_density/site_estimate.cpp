@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimate_density/site_estimate.hpp"
 
-#include <algorithm>
-
 #include <excavplan/results/stated_dig.hpp>
 
 #include "base/text.hpp"
@@ -50,11 +48,7 @@ void add_site(const excavplan::Site& site, const SiteUpdate& update, Outcome& ou
   if (!update.estimate) {
     outcome.json = {{"volume", nullptr}, {"bulking_factor", nullptr}, {"density_percent", nullptr}};
   }
-  for (const Warning& each : update.warnings) {
-    const auto same = [&](const Warning& known) { return known.message == each.message; };
-    const auto& known = outcome.warnings;
-    if (std::none_of(known.begin(), known.end(), same)) outcome.warnings.push_back(each);
-  }
+  add_new(update.warnings, outcome.warnings);
   outcome.trustworthy = outcome.trustworthy && update.trustworthy;
   outcome.json["trustworthy"] = outcome.trustworthy;
   outcome.json["site"] = site_json(site, update.density);

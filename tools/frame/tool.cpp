@@ -141,31 +141,18 @@ void settle_trust(Outcome& outcome) {
   }
 }
 
-/// What several parts of a work said alike, once.
-void drop_doubles(std::vector<Warning>& warnings) {
-  std::vector<Warning> kept;
-  for (Warning& each : warnings) {
-    const auto is_alike = [&](const Warning& other) {
-      return other.code == each.code && other.message == each.message;
-    };
-    if (std::none_of(kept.begin(), kept.end(), is_alike)) kept.push_back(std::move(each));
-  }
-  warnings = std::move(kept);
-}
-
 /// Options without effect, and in every tool that has --machine what the files of machines are not
-/// sure of.
+/// sure of. What several parts of the work said alike is told once.
 void add_option_warnings(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
                          Outcome& outcome) {
-  for (Warning& each : ignored_options(entries, words)) {
-    outcome.warnings.push_back(std::move(each));
-  }
+  std::vector<Warning> told;
+  add_new(outcome.warnings, told);
+  add_new(ignored_options(entries, words), told);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].name != "machine" || entries[i].positional) continue;
-    for (const std::string& text : words.of_entry[i].texts) {
-      for (Warning& each : machine_warnings(text)) outcome.warnings.push_back(std::move(each));
-    }
+    for (const std::string& text : words.of_entry[i].texts) add_new(machine_warnings(text), told);
   }
+  outcome.warnings = std::move(told);
 }
 
 /// All texts of a result.
@@ -232,7 +219,6 @@ int run(const CommandWords& command, const About& about,
     return with_options(arguments.entries(), [&] { return work(console); });
   });
   add_option_warnings(arguments.entries(), words, outcome);
-  drop_doubles(outcome.warnings);
   if (about.can_be_untrustworthy) settle_trust(outcome);
   console.clear();
   if (outcome.page) {

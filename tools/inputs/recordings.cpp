@@ -105,13 +105,7 @@ void RecordedScans::add_to(Outcome& outcome) const {
   if (recordings_.empty()) return;
   outcome.json["recordings"] = recordings_;
   outcome.lines.insert(outcome.lines.end(), lines_.begin(), lines_.end());
-  for (const Warning& doubt : doubts_) {
-    const auto& told = outcome.warnings;
-    if (std::none_of(told.begin(), told.end(),
-                     [&](const Warning& each) { return each.message == doubt.message; })) {
-      outcome.warnings.push_back(doubt);
-    }
-  }
+  add_new(doubts_, outcome.warnings);
 }
 
 MachinePosture recorded_posture(const RecordedInput& input) {

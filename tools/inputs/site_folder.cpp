@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inputs/site_folder.hpp"
 
-#include <cmath>
-
-#include "base/angles.hpp"
 #include "base/text.hpp"
 
 namespace excavplan::tools {

@@ -27,4 +27,7 @@ struct Warning {
 /// Whether one of them ends trust.
 bool any_ends_trust(const std::vector<Warning>& warnings);
 
+/// Adds those that are not there yet with the same code and message.
+void add_new(const std::vector<Warning>& more, std::vector<Warning>& warnings);
+
 }  // namespace excavplan
