@@ -96,7 +96,7 @@ struct CutLine {
   double z1 = 0.0;      ///< at its higher x [m]
   double share = 0.0;   ///< of the column's length
   double ahead = 0.0;   ///< share of the column that the lip has not passed before
-  double behind = 0.0;  ///< level of the line in the middle of what it has passed [m]
+  double behind = 0.0;  ///< mean level of the lip where it has passed the column [m]
 };
 /// The rows of a column.
 struct CutColumn {

@@ -33,6 +33,41 @@ constexpr double first_room = 0.5;            // of the window around the path a
 constexpr double rounding_of_ground = 1e-15;  // of a volume [m^3]
 constexpr double spill_error = 1e-8;          // of the soil that has no room in the bucket [m^3]
 
+/// How much of the column that it is in the lip has passed, and how high.
+class PassedPart {
+ public:
+  /// Of the way of the lip within one column.
+  struct Piece {
+    double length;   ///< along x [m]
+    double z_end;    ///< level where it ends, nearer to the machine [m]
+    double z_begin;  ///< where it begins [m]
+  };
+
+  /// Mean level of the lip over the last `behind` metres of a column, up to where the next piece
+  /// begins; where the lip has not been, of the piece's line. (That line alone tells nothing of the
+  /// pieces before: at the end of a scoop the lip rises nearly upright.)
+  double level(Index col, double behind, const Piece& next) {
+    if (col != col_) *this = PassedPart(col);
+    const double passed = std::min(length_, behind);
+    const double rest = behind - passed;
+    const double slope = (next.z_begin - next.z_end) / next.length;
+    const double of_passed = length_ > 0.0 ? passed * area_ / length_ : 0.0;
+    const double of_rest = rest * (next.z_begin + slope * (passed + 0.5 * rest));
+    length_ += next.length;
+    area_ += 0.5 * next.length * (next.z_end + next.z_begin);
+    return behind > 0.0 ? (of_passed + of_rest) / behind : next.z_begin;
+  }
+
+  PassedPart() = default;
+
+ private:
+  explicit PassedPart(Index col) : col_(col) {}
+
+  Index col_ = -1;
+  double length_ = 0.0;  ///< [m]
+  double area_ = 0.0;    ///< between the way of the lip and z = 0 [m^2]
+};
+
 /// One dig from its first pose to its end.
 class Dig {
  public:
@@ -166,8 +201,7 @@ class Dig {
     const double share = (x1 - x0) / map.cell_size;
     const double ahead =
         (x1 - left) / map.cell_size;  // share of the cell the lip has not passed yet
-    const double behind =             // the line's level in the middle of what it has passed
-        z1 + 0.5 * (left + map.cell_size - x1) * (z1 - z0) / (x1 - x0);
+    const double behind = passed_.level(col, left + map.cell_size - x1, {x1 - x0, z0, z1});
     require_known(col, x0);
     const std::size_t cell = ground_.at(swath_.first_row(), col);
     const auto count = static_cast<std::size_t>(swath_.rows());
@@ -326,6 +360,7 @@ class Dig {
   double top_of_pile_ = -std::numeric_limits<double>::infinity();  ///< lately [m]
   double gain_ = 0.0;  ///< of soil in and ahead of the bucket per rise of that, lately [m^2]
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
+  PassedPart passed_;  ///< of the column that the lip is in
   /// Cells that may not be at rest: those that the lip has passed, whose walls the bucket holds
   /// until it is out, and those of the pile.
   CellBlock moving_;

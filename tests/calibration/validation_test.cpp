@@ -184,7 +184,7 @@ TEST_F(Validation, SameBytesFromEveryCompilerAndOptimisationLevel) {
   for (const double loose : result.patch.loose.reshaped()) hash.add(loose);
   hash.add(result.payload_mass);
   hash.add(result.energy.total);
-  EXPECT_EQ(hash.value(), 0xf84dfca6a9887e20ULL) << "0x" << std::hex << hash.value();
+  EXPECT_EQ(hash.value(), 0xf1e773fde2ffa617ULL) << "0x" << std::hex << hash.value();
 }
 
 }  // namespace

@@ -447,6 +447,23 @@ TEST_F(Simulator, TheWedgeSlidesOnPackedSoilWhereThatIsEasier) {
   EXPECT_LE(force(0.3), force(0.0));
 }
 
+TEST_F(Simulator, ALipThatRisesAboveThePileTakesNothingOfIt) {
+  // A scoop ends with the lip rising nearly upright, 0.7 m above what lies there. Starts that
+  // differ by fractions of a millimetre let it enter another column or not.
+  const Terrain ground = level_planning_ground(machine_);
+  const GroundProfile level = boom_plane_profile(ground.surface());
+  const HeightMapSimulator simulator(machine_, soil_kind("clay"), 10.0);
+  double before = 0.0;
+  for (int i = -10; i <= 10; ++i) {
+    const auto path = make_dig_path(machine_, {0.9311, 0.5402, 0.0006}, 4.2361 + 3e-4 * i, level);
+    const double payload = simulator.dig(ground, std::get<DigPath>(path)).payload_mass;
+    if (before > 0.0) {
+      EXPECT_NEAR(payload, before, 0.002 * before) << i;
+    }
+    before = payload;
+  }
+}
+
 TEST_F(Simulator, HalvingTheStepChangesLittle) {
   const Terrain ground = level_planning_ground(machine_);
   const GroundProfile level = boom_plane_profile(ground.surface());

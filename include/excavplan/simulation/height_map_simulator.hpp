@@ -14,7 +14,7 @@ namespace excavplan {
 
 /// Rises with every change of the simulator that affects the result of a dig. What was computed
 /// with another version, such as a path library, is refused.
-inline constexpr int height_map_simulator_version = 4;
+inline constexpr int height_map_simulator_version = 5;
 
 struct HeightMapModel;
 
