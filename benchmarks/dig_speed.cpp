@@ -234,7 +234,7 @@ class Listening : public SoilSimulator {
   mutable std::vector<DigPath> paths_;
 };
 
-/// As plan_dig() searches in certain soil where it does not screen.
+/// A search on the ground itself alone.
 DigSearchOptions usual_search(std::uint64_t seed) {
   DigSearchOptions options = budget_search();
   options.seed = seed;
@@ -288,15 +288,15 @@ double spearman(const std::vector<double>& a, const std::vector<double>& b) {
   return 1.0 - 6.0 * sum / (n * (n * n - 1.0));
 }
 
-/// Searches as plan_dig() does and screened; prints the worth, what the screened one gains on it
-/// and the seconds of both.
+/// Searches on the ground itself and screened, as plan_dig() does; prints the worth, what the
+/// screened one gains on it and the seconds of both.
 void search_both(const SoilSimulator& simulator, const Terrain& ground, std::uint64_t seed) {
   const DigSearchOptions options = usual_search(seed);
   const double begin = processor_time();
   const auto usual = search_dig(zx120(), simulator, ground, options);
   const double between = processor_time();
   DigSearchOptions on_coarse_ground = options;
-  on_coarse_ground.stop.evaluations = 280;  // of plan_dig()
+  on_coarse_ground.stop.evaluations = 900;  // of plan_dig()
   const auto screened = search_screened(zx120(), simulator, ground, on_coarse_ground);
   const double end = processor_time();
   const double worth = usual ? usual->worth : 0.0;
@@ -332,13 +332,13 @@ void dig_candidates(const std::string& scan_file) {
   const std::vector<DigPath>& paths = listening.paths();
   const Digs fine = dig_all(simulator, ground, paths);
   std::printf("%zu candidates, fine: %.0f digs/s\n", paths.size(), fine.per_second);
-  const Terrain coarse = coarser(ground, 2);
+  const Terrain coarse = coarser(ground, Screening().cells);
   const GroundProfile profile = boom_plane_profile(coarse);
   std::vector<DigPath> rough;
   std::vector<double> worth;  // fine, of those that are laid out in coarse steps too
   for (std::size_t i = 0; i < paths.size(); ++i) {
     DigPathOptions rules;
-    rules.step *= 2.0;
+    rules.step *= Screening().steps;
     const auto path = make_dig_path(zx120(), paths[i].parameters, paths[i].start_x, profile, rules);
     if (!std::holds_alternative<DigPath>(path)) continue;
     rough.push_back(std::get<DigPath>(path));

@@ -9,8 +9,10 @@
 #include <nlopt.hpp>
 
 #include "base/random.hpp"
+#include "optimisation/evolution_polish.hpp"
 #include "optimisation/search_methods.hpp"
 #include "optimisation/search_points.hpp"
+#include "optimisation/space_filling.hpp"
 
 namespace excavplan {
 namespace {
@@ -18,36 +20,10 @@ namespace {
 using Eigen::VectorXd;
 using Origin = SearchRecord::Origin;
 
-/// Space-filling points: the additive recurrence of Roberts ("The unreasonable effectiveness of
-/// quasirandom sequences", 2018) from a random first point.
-class SpaceFilling {
- public:
-  SpaceFilling(Eigen::Index dimensions, std::uint64_t seed)
-      : first_(dimensions), step_(dimensions) {
-    double root = 2.0;  // of x^(n + 1) = x + 1
-    const auto n = static_cast<double>(dimensions);
-    for (int i = 0; i < 60; ++i) root = std::pow(1.0 + root, 1.0 / (1.0 + n));
-    Random random(seed, 0);
-    for (Eigen::Index i = 0; i < dimensions; ++i) {
-      first_(i) = random.uniform();
-      step_(i) = std::pow(root, -1.0 - static_cast<double>(i));
-    }
-  }
-  VectorXd next() {
-    VectorXd u = first_ + static_cast<double>(drawn_++) * step_;
-    return u.array() - u.array().floor();
-  }
-
- private:
-  VectorXd first_;
-  VectorXd step_;
-  int drawn_ = 0;
-};
-
 /// Nelder-Mead search from a point already evaluated, in one strand.
-class Polish {
+class SimplexPolish {
  public:
-  Polish(const UnitCube& cube, const SearchRecord& start, int place, double step)
+  SimplexPolish(const UnitCube& cube, const SearchRecord& start, int place, double step)
       : cube_(cube),
         start_(start.point),
         start_u_(cube.inside(start.point)),
@@ -58,7 +34,7 @@ class Polish {
     strand_ = &strand;
     const auto n = static_cast<unsigned>(cube_.dimensions());
     nlopt::opt search(nlopt::LN_NELDERMEAD, n);
-    search.set_max_objective(&Polish::value, this);
+    search.set_max_objective(&SimplexPolish::value, this);
     std::vector<double> upper(n, 1.0);
     for (unsigned i = 0; i < n; ++i) {
       if (cube_.is_flat(i)) upper[i] = 0.0;
@@ -84,7 +60,7 @@ class Polish {
   static constexpr double worst = -1e30;       // below every fitness; finite, to be compared
 
   static double value(const std::vector<double>& u, std::vector<double>&, void* self) {
-    return static_cast<Polish*>(self)->value(u);
+    return static_cast<SimplexPolish*>(self)->value(u);
   }
 
   /// NLopt loses the text of what is thrown through it: it is carried around it.
@@ -177,13 +153,32 @@ class Memetic {
 
   /// A simplex that has shrunk at a cliff or a step may improve further when spread again.
   void restart() {
-    if (method_.basins > 0) polish({log_.best()}, restart_step);
+    if (method_.basins > 0 && log_.best() >= 0) polish(best_apart(method_.restarts), restart_step);
+  }
+
+  std::vector<int> all_best_first() const {
+    std::vector<int> all(static_cast<std::size_t>(log_.size()));
+    std::iota(all.begin(), all.end(), 0);
+    return best_first(std::move(all));
+  }
+
+  /// The best point, and the next that lie apart from those before.
+  std::vector<int> best_apart(int count) const {
+    std::vector<int> chosen;
+    for (const int place : all_best_first()) {
+      if (static_cast<int>(chosen.size()) == count || !promises(log_[place].outcome)) break;
+      if (std::none_of(chosen.begin(), chosen.end(), [&](int other) {
+            return cube_.distance(log_[place].point, log_[other].point) <=
+                   apart * method_.basin_radius;
+          })) {
+        chosen.push_back(place);
+      }
+    }
+    return chosen;
   }
 
   void breed() {
-    std::vector<int> all(static_cast<std::size_t>(log_.size()));
-    std::iota(all.begin(), all.end(), 0);
-    elite_ = best_first(std::move(all));
+    elite_ = all_best_first();
     elite_.resize(std::min(elite_.size(), elite_size));
     const int immigrants =
         static_cast<int>(std::ceil(method_.immigrants * method_.generation_size));
@@ -251,13 +246,16 @@ class Memetic {
 
   void polish(const std::vector<int>& starts, double step) {
     if (log_.stopped()) return;
-    std::vector<Polish> polishes;
-    for (const int start : starts) {
-      if (promises(log_[start].outcome)) polishes.emplace_back(cube_, log_[start], start, step);
-    }
     std::vector<std::function<void(SearchLog::Strand&)>> tasks;
-    tasks.reserve(polishes.size());
-    for (Polish& one : polishes) tasks.emplace_back(std::ref(one));
+    for (const int start : starts) {
+      if (!promises(log_[start].outcome)) continue;
+      if (method_.polishing == Polishing::evolution) {
+        const double first = std::min(step, longest_first_step);
+        tasks.emplace_back(EvolutionPolish(cube_, log_[start], start, first, task_.seed));
+      } else {
+        tasks.emplace_back(SimplexPolish(cube_, log_[start], start, step));
+      }
+    }
     log_.run_strands(generation_, method_.polish_evaluations, tasks);
     polished_.insert(polished_.end(), starts.begin(), starts.end());
     polished_.push_back(log_.best());
@@ -268,6 +266,8 @@ class Memetic {
   static constexpr double given_step = 0.05;
   static constexpr double first_step = 0.1;
   static constexpr double restart_step = 0.15;
+  static constexpr double longest_first_step = 0.06;  // of an evolution, which lengthens its own
+  static constexpr double apart = 0.25;               // of the radius of a basin
   static constexpr double widest = 0.2;
   static constexpr std::size_t elite_size = 10;  // several: under noise the best is often no better
 

@@ -82,6 +82,7 @@ void check(const MemeticSearch& method, const SearchTask& task) {
           method.immigrants);
   require(method.basins >= 0, "basins must be >= 0", method.basins);
   require_count("polish_evaluations", method.polish_evaluations, 0);
+  require(method.restarts >= 0, "restarts must be >= 0", method.restarts);
   require(method.basin_radius > 0.0, "basin_radius must be > 0", method.basin_radius);
 }
 

@@ -33,11 +33,15 @@ std::string text_of(const Eigen::VectorXd& numbers) {
 }
 
 std::string describe(const MemeticSearch& method) {
-  return "memetic, first generation " + std::to_string(method.first_generation) + ", generations " +
-         std::to_string(method.generations) + " of " + std::to_string(method.generation_size) +
-         ", immigrants " + number_text(method.immigrants) + ", basins " +
-         std::to_string(method.basins) + " of radius " + number_text(method.basin_radius) +
-         ", polish " + std::to_string(method.polish_evaluations);
+  std::string text = "memetic, first generation " + std::to_string(method.first_generation) +
+                     ", generations " + std::to_string(method.generations) + " of " +
+                     std::to_string(method.generation_size) + ", immigrants " +
+                     number_text(method.immigrants) + ", basins " + std::to_string(method.basins) +
+                     " of radius " + number_text(method.basin_radius) + ", polish " +
+                     std::to_string(method.polish_evaluations);
+  if (method.polishing == Polishing::evolution) text += " by evolution";
+  if (method.restarts != 1) text += ", restarts " + std::to_string(method.restarts);
+  return text;
 }
 
 /// All that decides the course of a search, stop rules and given points apart.

@@ -239,7 +239,7 @@ Found<DigSearchResult> DigProblem::result_of(const SearchResult& found) const {
 }
 
 std::vector<KnownDig> DigProblem::best_apart(const SearchResult& found, int count) const {
-  constexpr double apart = 0.1;  // of the search ranges; ours
+  constexpr double apart = 0.05;  // of the search ranges; ours
   std::vector<const SearchRecord*> feasible;
   for (const SearchRecord& record : found.history) {
     const bool simulated = record.source == SearchRecord::Source::simulated;

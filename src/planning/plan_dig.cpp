@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -39,8 +40,7 @@ constexpr double likely_stall = 0.05;  // probability; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 // Of a search that is screened; ours, docs/methods.md#planning.
-constexpr int screened_digs = 280;
-constexpr Screening on_ground_itself = {1, 1.0, 120};
+constexpr int screened_digs = 900;
 
 struct Task {
   const Machine& machine;  ///< as it stands
@@ -361,60 +361,29 @@ void search_as_told(const Task& task, const SoilSimulator& simulator, DigSearchO
   take(found, found ? &*found : nullptr, plan);
 }
 
-/// Whether the ground under the bucket, ahead of the machine, is a slope along the boom to within a
-/// cell (root of the mean square), on which nothing stands.
-bool is_even(const Machine& machine, const Terrain& ground) {
-  const HeightMap& bank = ground.bank;
-  const double slope = std::tan(boom_plane_slope(ground, machine.track_front));
-  const double half = 0.5 * machine.bucket.width_outside;
-  double count = 0.0, sum = 0.0, squares = 0.0;
-  for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
-    for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
-      if (bank.x(col) < machine.track_front || std::abs(bank.y(row)) > half) continue;
-      if (ground.obstacles.size() > 0 && !std::isnan(ground.obstacles(row, col))) return false;
-      const double z = bank.z(row, col) + ground.loose(row, col) - slope * bank.x(col);
-      if (std::isnan(z)) continue;
-      count += 1.0;
-      sum += z;
-      squares += z * z;
-    }
-  }
-  const double cell = usual_cell(machine);
-  return squares * count - sum * sum <= cell * cell * count * count;
+bool is_usual(const MemeticSearch& method) {
+  const auto numbers = [](const MemeticSearch& of) {
+    return std::make_tuple(of.first_generation, of.generations, of.generation_size, of.immigrants,
+                           of.basins, of.polish_evaluations, of.basin_radius, of.polishing,
+                           of.restarts);
+  };
+  return numbers(method) == numbers(std::get<MemeticSearch>(budget_search().method));
 }
 
 /// Whether a search is the default one in the default simulator, of which two fidelities are known.
 bool is_usual(const Task& task) {
   const DigSearchOptions& search = task.options.search;
   const StopRules& stop = search.stop;
+  const auto* method = std::get_if<MemeticSearch>(&search.method);
   return stop.evaluations == 0 && stop.stall == 0 && stop.seconds == 0.0 && !stop.target &&
-         std::holds_alternative<MemeticSearch>(search.method) &&
-         search.start_rule.kind == StartRule::Kind::searched &&
+         method && is_usual(*method) && search.start_rule.kind == StartRule::Kind::searched &&
          task.options.simulator.name == default_simulator().name;
 }
 
-/// A search for candidates and the polish of the best: the candidates on coarser ground, if that
-/// tells them. It does not where the ground bends or something stands, nor where no dig fills the
-/// bucket: there the best are at the edge of what the machine can.
 void search_usual(const Task& task, const SoilSimulator& simulator, DigSearchOptions options,
                   DigPlan& plan) {
-  int made = 0;
-  const auto search = [&](const Screening& screening, int digs) {
-    DigSearchOptions part = options;
-    part.stop.evaluations = digs;
-    part.progress = as_part_of(options.progress, made, made + digs + screening.confirmed);
-    return search_screened(task.machine, simulator, task.ground, part, screening);
-  };
-  Found<DigSearchResult> found;
-  if (is_even(task.machine, task.ground)) found = search(Screening(), screened_digs);
-  const bool fills = found && found->dig.fill >= task.objective().min_fill;
-  if (!fills && !was_stopped(found)) {
-    const Found<DigSearchResult> coarse = std::exchange(found, {});
-    made = digs_of(coarse);
-    if (coarse) options.start.emplace_back(coarse->dig.parameters, coarse->dig.start_x);
-    found = search(on_ground_itself, options.stop.evaluations - on_ground_itself.confirmed);
-    precede(coarse, found);
-  }
+  options.stop.evaluations = screened_digs;
+  const auto found = search_screened(task.machine, simulator, task.ground, options);
   take(found, found ? &*found : nullptr, plan);
 }
 
@@ -458,6 +427,7 @@ void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
   DigSearchOptions options = task.options.search;
+  options.objective.min_fill = std::max(options.objective.min_fill, worth_making);
   if (options.start.empty() && begins_known(task)) options.start = known_start(task, plan);
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {

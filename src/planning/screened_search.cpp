@@ -14,6 +14,8 @@
 #include "base/check.hpp"
 #include "base/non_finite.hpp"
 #include "ground/terrain.hpp"
+#include "optimisation/space_filling.hpp"
+#include "planning/dig_layout.hpp"
 #include "planning/dig_problem.hpp"
 
 namespace excavplan {
@@ -50,15 +52,64 @@ Eigen::ArrayXXd means(const Eigen::ArrayXXd& layer, int cells, const Weight& wei
   return coarse;
 }
 
+MemeticSearch only_polishing(int basins, double apart, int evaluations) {
+  auto polish = std::get<MemeticSearch>(budget_search().method);
+  polish.first_generation = 0;
+  polish.polishing = Polishing::evolution;
+  polish.basins = basins;
+  polish.basin_radius = apart;
+  polish.polish_evaluations = evaluations;
+  return polish;
+}
+
+/// Digs that can be driven, from all over the search ranges and the reach: short ones more often,
+/// and some that do not drag, as the best often do not.
+std::vector<KnownDig> drivable_digs(const DigLayout& layout, const DigSearchOptions& options,
+                                    int count) {
+  constexpr int tries = 20;         // for each; ours
+  constexpr double no_drag = 0.15;  // share of the digs; ours
+  const DigBounds bounds = machine_bounds(layout.machine(), options.bounds);
+  const Machine& machine = layout.machine();
+  const double reach = machine.boom_pin.x() + machine.full_length();
+  const auto within = [&](double DigParameters::*field, double share) {
+    return bounds.lower.*field + share * (bounds.upper.*field - bounds.lower.*field);
+  };
+  const auto squared = [](double share) { return share * share; };
+  SpaceFilling sequence(4, options.seed);
+  std::vector<KnownDig> digs;
+  for (int i = 0; i < tries * count && static_cast<int>(digs.size()) < count; ++i) {
+    const Eigen::VectorXd u = sequence.next();
+    const DigParameters dig = {within(&DigParameters::penetration_angle, u(0)),
+                               within(&DigParameters::penetration_length, squared(u(1))),
+                               within(&DigParameters::drag_length,
+                                      squared(std::max(0.0, u(2) - no_drag) / (1.0 - no_drag)))};
+    const double start_x = machine.track_front + u(3) * (reach - machine.track_front);
+    const auto path = layout.path_from(dig, start_x);
+    if (std::holds_alternative<DigPath>(path)) digs.emplace_back(dig, start_x);
+  }
+  return digs;
+}
+
+/// Digs all over the reach, and polishes of the best of them.
+DigSearchOptions exploring(const Machine& machine, const Terrain& terrain,
+                           DigSearchOptions options) {
+  constexpr double first = 0.45;  // of the digs; ours
+  const DigLayout layout(machine, terrain, options.rules);
+  auto digs = drivable_digs(layout, options, static_cast<int>(first * options.stop.evaluations));
+  if (digs.empty()) return options;
+  auto method = only_polishing(8, 0.15, 45);  // ours, as all numbers of it
+  method.restarts = 3;
+  method.generations = 0;
+  options.method = method;
+  options.start.insert(options.start.end(), digs.begin(), digs.end());
+  return options;
+}
+
 /// Polishes the candidates, and what was known before.
 DigSearchOptions confirming(const DigSearchOptions& options, std::vector<KnownDig> candidates,
                             int digs) {
-  auto polish = std::get<MemeticSearch>(budget_search().method);
-  polish.first_generation = 0;
-  polish.basins = 2;
-  polish.polish_evaluations = 30;
   DigSearchOptions confirm = options;
-  confirm.method = polish;
+  confirm.method = only_polishing(2, 0.03, 60);
   confirm.stop.evaluations = digs;
   confirm.start = std::move(candidates);
   confirm.start.insert(confirm.start.end(), options.start.begin(), options.start.end());
@@ -91,17 +142,18 @@ Screened screen(const Machine& machine, const SoilSimulator& simulator, const Te
   const Terrain coarse = screening.cells > 1 ? coarser(terrain, screening.cells) : terrain;
   DigSearchOptions search = without_checkpoint(options);
   search.rules.step *= screening.steps;
-  const auto first = search_by_least_work(machine, simulator, coarse, search);
-  if (first && was_stopped(*first)) {
-    if (!*first) return {{}, *first};
-    return {{KnownDig((*first)->dig.parameters, (*first)->dig.start_x)}, *first};
+  const bool explores = search.start_rule.kind == StartRule::Kind::searched &&
+                        std::holds_alternative<MemeticSearch>(search.method) &&
+                        search.stop.evaluations > 0;
+  if (explores) {
+    search = exploring(machine, coarse, std::move(search));
+    search.progress =
+        as_part_of(options.progress, 0, options.stop.evaluations + screening.confirmed);
   }
   const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
   DigProblem problem(machine, soils, coarse, search);
   const SearchResult found = problem.run();
-  Screened screened{problem.best_apart(found, screening.candidates), problem.result_of(found)};
-  if (first) precede(*first, screened.result);
-  return screened;
+  return {problem.best_apart(found, screening.candidates), problem.result_of(found)};
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ PlannedDig planned(const Machine& machine) {
   const auto simulator = default_simulator().make(machine, loam, 40.0);
   DigSearchOptions options = budget_search();
   options.objective = feasible_objective(machine, options.objective);
-  options.stop.evaluations = 150;
+  options.stop.evaluations = 600;
   return search_dig(machine, *simulator, level_planning_ground(machine), options).value().dig;
 }
 

@@ -303,19 +303,25 @@ TEST(Search, FlatSidesOfTheBoxAndOneDimensionAreFine) {
   EXPECT_NEAR(search(line).best(0), 2.5, 0.01);
 }
 
-// What holds for both methods -------------------------------------------------------------------
+// What holds for both methods, and for both polishes
+// -------------------------------------------------------------------
 
-class BothMethods : public testing::TestWithParam<bool> {
+class BothMethods : public testing::TestWithParam<std::string> {
  protected:
   static SearchOptions options(std::uint64_t seed = 1) {
-    if (GetParam()) return with_seed(seed);
+    if (GetParam() == "Memetic") return with_seed(seed);
+    if (GetParam() == "Evolution") {
+      SearchOptions options = with_seed(seed);
+      std::get<MemeticSearch>(options.method).polishing = Polishing::evolution;
+      return options;
+    }
     GeneticAlgorithm method;
     method.population = 20;
     return papers(method, seed);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Search, BothMethods, testing::Bool(),
-                         [](const auto& method) { return method.param ? "Memetic" : "Genetic"; });
+INSTANTIATE_TEST_SUITE_P(Search, BothMethods, testing::Values("Memetic", "Evolution", "Genetic"),
+                         [](const auto& method) { return method.param; });
 
 TEST_P(BothMethods, SameBytesForAnyThreadsAndAnyOrderOfCompletion) {
   SearchOptions one = options();
@@ -608,6 +614,43 @@ TEST(Search, FollowsTheViolationToTheFeasibleCorner) {
   }
 }
 
+/// A hill that is feasible below a plane through its flank, from a given point on the plane.
+SearchResult on_the_flank(Polishing polishing, std::uint64_t seed) {
+  const Objective flank = [](const VectorXd& x) -> Evaluation {
+    return x.sum() > 1.2 ? Evaluation::infeasible(0.5) : hill(x);
+  };
+  MemeticSearch method;
+  method.first_generation = method.generations = 0;
+  method.polishing = polishing;
+  method.polish_evaluations = 120;
+  SearchOptions options = with_seed(seed);
+  options.method = method;
+  options.stop.evaluations = 120;
+  options.start = {Eigen::Vector3d(0.9, 0.15, 0.15)};
+  return search(problem(flank), options);
+}
+
+TEST(Search, AnEvolutionGoesAlongAnEdge) {
+  const double best = hill(VectorXd::Constant(3, 0.4));
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    EXPECT_GT(on_the_flank(Polishing::evolution, seed).outcome.fitness, 0.97 * best) << seed;
+  }
+  EXPECT_LT(on_the_flank(Polishing::simplex, 1).outcome.fitness, 0.85 * best);
+}
+
+TEST(Search, AnEvolutionEndsAtFacesOfTheBox) {
+  MemeticSearch method;
+  method.first_generation = method.generations = 0;
+  method.polishing = Polishing::evolution;
+  SearchOptions options = with_seed(1);
+  options.method = method;
+  options.start = {VectorXd::Constant(3, 0.5)};
+  const SearchResult found =
+      search(problem([](const VectorXd& x) { return x(0) - x(1); }), options);
+  EXPECT_EQ(found.best(0), 1.0);
+  EXPECT_EQ(found.best(1), 0.0);
+}
+
 TEST(Evaluations, FeasibleThenViolationThenFitness) {
   const Evaluation good(2.0);
   const Evaluation poor(1.0);
@@ -807,6 +850,19 @@ TEST_F(SearchCheckpointFile, IsRefusedForAnotherSettingOfThePapersAlgorithm) {
   for (const GeneticAlgorithm& other : others) {
     const std::string refused = resumed_with(other);
     EXPECT_EQ(refused.rfind("search: is 'genetic algorithm: ", 0), 0U) << refused;
+  }
+}
+
+TEST_F(SearchCheckpointFile, IsRefusedForAnotherSettingOfTheMemeticSearch) {
+  MemeticSearch by_evolution;
+  by_evolution.polishing = Polishing::evolution;
+  MemeticSearch more_restarts;
+  more_restarts.restarts = 2;
+  cut_off(20, options(), hartmann);
+  for (const MemeticSearch& other : {by_evolution, more_restarts}) {
+    SearchOptions changed = options();
+    changed.method = other;
+    EXPECT_NE(error_about([&] { search(with_fingerprint(hartmann), changed); }, file_), "");
   }
 }
 

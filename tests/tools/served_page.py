@@ -85,7 +85,7 @@ class Served(unittest.TestCase):
 
         dig = plan_site("next", JOB)
         self.assertEqual(dig["what"], "dig")
-        after = write_ground("after.asc", lambda x, y: -0.3 if 3.2 < x < 4.4 and 0 < y < 0.5 else 0.0)
+        after = write_ground("after.asc", lambda x, y: -0.3 if 3.2 < x < 4.4 and abs(y) < 0.5 else 0.0)
         done = plan_site("done", JOB, "--step", str(dig["step"]), "--payload-mass", "400",
                          "--energy-kj", "140", "--scan", after, "--time", "1200")
         self.wait("return excavplanReport.time() === 2")

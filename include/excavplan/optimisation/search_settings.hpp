@@ -29,9 +29,16 @@ struct GeneticAlgorithm {
   int elites = 1;          ///< best individuals that are kept, 0 .. population - 1; 1 in the paper
 };
 
-/// Given points are polished first (bounded Nelder-Mead); then a space-filling first generation,
-/// polish of its best separate basins and once more of the best; then generations of mutants of the
-/// best and fresh space-filling immigrants, with a polish of every promising new basin.
+/// How a point is improved step by step.
+enum class Polishing {
+  simplex,    ///< bounded Nelder-Mead: few evaluations where the objective is smooth
+  evolution,  ///< (1+1)-CMA-ES with constraints: goes along the edge of what is feasible
+};
+
+/// Given points are polished first; then a space-filling first generation,
+/// polish of its best separate basins and once more of the best (`restarts`); then generations of
+/// mutants of the best and fresh space-filling immigrants, with a polish of every promising new
+/// basin.
 struct MemeticSearch {
   int first_generation = 16;    ///< points, >= 0; 0 only with given points
   int generations = 4;          ///< after the polish, >= 0; some 50 evaluations each
@@ -40,6 +47,8 @@ struct MemeticSearch {
   int basins = 3;               ///< polished of the first generation, >= 0
   int polish_evaluations = 45;  ///< of one polish, >= 0; 15 per dimension suffice
   double basin_radius = 0.2;    ///< two basins are farther apart than this share of the box, > 0
+  Polishing polishing = Polishing::simplex;  ///< of all polishes
+  int restarts = 1;                          ///< best points polished once more, >= 0
 };
 
 /// The search ends at the first that is seen to hold. 0: no such rule. `evaluations` is never
