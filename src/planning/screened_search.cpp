@@ -52,13 +52,11 @@ Eigen::ArrayXXd means(const Eigen::ArrayXXd& layer, int cells, const Weight& wei
   return coarse;
 }
 
-MemeticSearch only_polishing(int basins, double apart, int evaluations) {
+/// Numbers of both searches: ours.
+MemeticSearch only_polishing() {
   auto polish = std::get<MemeticSearch>(budget_search().method);
   polish.first_generation = 0;
   polish.polishing = Polishing::evolution;
-  polish.basins = basins;
-  polish.basin_radius = apart;
-  polish.polish_evaluations = evaluations;
   return polish;
 }
 
@@ -97,7 +95,10 @@ DigSearchOptions exploring(const Machine& machine, const Terrain& terrain,
   const DigLayout layout(machine, terrain, options.rules);
   auto digs = drivable_digs(layout, options, static_cast<int>(first * options.stop.evaluations));
   if (digs.empty()) return options;
-  auto method = only_polishing(8, 0.15, 45);  // ours, as all numbers of it
+  MemeticSearch method = only_polishing();
+  method.basins = 8;
+  method.basin_radius = 0.15;
+  method.polish_evaluations = 45;
   method.restarts = 3;
   method.generations = 0;
   options.method = method;
@@ -109,7 +110,11 @@ DigSearchOptions exploring(const Machine& machine, const Terrain& terrain,
 DigSearchOptions confirming(const DigSearchOptions& options, std::vector<KnownDig> candidates,
                             int digs) {
   DigSearchOptions confirm = options;
-  confirm.method = only_polishing(2, 0.03, 60);
+  MemeticSearch method = only_polishing();
+  method.basins = 2;
+  method.basin_radius = 0.03;
+  method.polish_evaluations = 60;
+  confirm.method = method;
   confirm.stop.evaluations = digs;
   confirm.start = std::move(candidates);
   confirm.start.insert(confirm.start.end(), options.start.begin(), options.start.end());
