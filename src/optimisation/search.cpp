@@ -114,9 +114,13 @@ double planned_evaluations(const GeneticAlgorithm& method, const SearchTask& tas
   return first + (method.generations - 1.0) * (method.population - method.elites);
 }
 
-double planned_evaluations(const MemeticSearch& method, const SearchTask&) {
-  const double polishes = method.basins > 0 ? 1.0 + method.basins + method.generations : 0.0;
-  return method.first_generation + polishes * method.polish_evaluations +
+double planned_evaluations(const MemeticSearch& method, const SearchTask& task) {
+  const auto given = static_cast<double>(task.start.size());
+  const double of_given = std::min<double>(given, method.basins);
+  const double polishes =
+      method.basins > 0 ? 1.0 * method.restarts + method.basins + of_given + method.generations
+                        : 0.0;
+  return given + method.first_generation + polishes * method.polish_evaluations +
          1.0 * method.generations * method.generation_size;
 }
 

@@ -311,13 +311,22 @@ bool begins_known(const Task& task) {
   return task.options.library || std::holds_alternative<MemeticSearch>(task.options.search.method);
 }
 
+bool is_usual(const MemeticSearch& method) {
+  const auto numbers = [](const MemeticSearch& of) {
+    return std::make_tuple(of.first_generation, of.generations, of.generation_size, of.immigrants,
+                           of.basins, of.polish_evaluations, of.basin_radius, of.polishing,
+                           of.restarts);
+  };
+  return numbers(method) == numbers(std::get<MemeticSearch>(budget_search().method));
+}
+
 /// With the digs of the default method, unless the caller said how many.
 DigSearchOptions within_budget(const DigSearchOptions& search, bool uncertain) {
   DigSearchOptions options = search;
   auto* memetic = std::get_if<MemeticSearch>(&options.method);
   if (options.stop.evaluations != 0 || !memetic) return options;
   options.stop.evaluations = evaluation_budget(uncertain, !options.start.empty());
-  if (!uncertain) {  // slopes and pits have more valleys than level ground
+  if (!uncertain && is_usual(*memetic)) {  // slopes and pits have more valleys than level ground
     memetic->first_generation = 48;
     memetic->polish_evaluations = 30;
   }
@@ -359,15 +368,6 @@ void search_as_told(const Task& task, const SoilSimulator& simulator, DigSearchO
   auto found = search_dig(task.machine, simulator, task.ground, options);
   if (first) precede(*first, found);
   take(found, found ? &*found : nullptr, plan);
-}
-
-bool is_usual(const MemeticSearch& method) {
-  const auto numbers = [](const MemeticSearch& of) {
-    return std::make_tuple(of.first_generation, of.generations, of.generation_size, of.immigrants,
-                           of.basins, of.polish_evaluations, of.basin_radius, of.polishing,
-                           of.restarts);
-  };
-  return numbers(method) == numbers(std::get<MemeticSearch>(budget_search().method));
 }
 
 /// Whether a search is the default one in the default simulator, of which two fidelities are known.

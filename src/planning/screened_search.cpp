@@ -93,7 +93,8 @@ DigSearchOptions exploring(const Machine& machine, const Terrain& terrain,
                            DigSearchOptions options) {
   constexpr double first = 0.45;  // of the digs; ours
   const DigLayout layout(machine, terrain, options.rules);
-  auto digs = drivable_digs(layout, options, static_cast<int>(first * options.stop.evaluations));
+  const double count = std::max(1.0, first * options.stop.evaluations);
+  auto digs = drivable_digs(layout, options, static_cast<int>(count));
   if (digs.empty()) return options;
   MemeticSearch method = only_polishing();
   method.basins = 8;
@@ -190,6 +191,7 @@ Found<DigSearchResult> search_screened(const Machine& machine, const SoilSimulat
                                        const Screening& screening) {
   require(screening.steps >= 1.0 && std::isfinite(screening.steps), "screening: steps in one",
           screening.steps, "finite and at least 1");
+  require_in("search: stop.evaluations", options.stop.evaluations, 0, most_evaluations);
   require_in("screening: digs on the ground itself", screening.confirmed, 1, most_evaluations);
   require_in("screening: candidates", screening.candidates, 1, most_evaluations);
   require_own_checkpoint(machine, simulator, terrain, confirming(options, {}, screening.confirmed));
@@ -211,6 +213,7 @@ Found<DigSearchResult> search_screened(const Machine& machine, const SoilSimulat
     precede(polished, found);
   }
   precede(screened.result, found);
+  if (!found && stopped) found.stopped = true;
   if (found && stopped) {
     found->stopped = true;
     found->stopped_by = StopReason::cancelled;

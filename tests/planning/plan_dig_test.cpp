@@ -406,6 +406,14 @@ TEST_F(PlanDig, AScreenedSearchIsAsGoodWhereTheBestDigsAreAtAnEdge) {
   EXPECT_GT(in_hard.dig->fill, 0.98 * thorough.dig->fill);
 }
 
+TEST_F(PlanDig, OwnNumbersOfAPolishCount) {
+  PlanOptions few = searched(0, 1), many = searched(0, 1);
+  std::get<MemeticSearch>(few.search.method).polish_evaluations = 5;
+  std::get<MemeticSearch>(many.search.method).polish_evaluations = 200;
+  EXPECT_NE(bytes(plan_dig(machine_, loam_, 40.0, rising(0.1), few)),
+            bytes(plan_dig(machine_, loam_, 40.0, rising(0.1), many)));
+}
+
 TEST_F(PlanDig, ASearchWithOwnNumbersIsMadeAsTold) {
   PlanOptions options = searched(0, 1);
   std::get<MemeticSearch>(options.search.method).generations = 3;

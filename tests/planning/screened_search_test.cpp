@@ -54,6 +54,44 @@ TEST_F(ScreenedSearch, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one->dig.start_x, three->dig.start_x);
 }
 
+/// Stalls in fine steps.
+class CoarseStepsOnly : public SoilSimulator {
+ public:
+  explicit CoarseStepsOnly(const SoilSimulator& other) : other_(other) {}
+  DigResult dig(const Terrain& terrain, const DigPath& path,
+                const DigOptions& options) const override {
+    DigResult result = other_.dig(terrain, path, options);
+    const double step = (path.poses[1].bucket.x - path.poses[0].bucket.x);
+    if (std::abs(step) < 0.02) result.stall = Stall();
+    return result;
+  }
+
+ private:
+  const SoilSimulator& other_;
+};
+
+TEST_F(ScreenedSearch, CancelledBeforeADigInFineStepsItSaysSo) {
+  const CoarseStepsOnly simulator(simulator_);
+  DigSearchOptions options = small_search(1);
+  options.progress = [](const SearchProgress& now) { return now.evaluations < 100; };
+  const auto found = search_screened(machine_, simulator, level_planning_ground(machine_), options);
+  EXPECT_FALSE(found);
+  EXPECT_TRUE(found.stopped);
+}
+
+TEST_F(ScreenedSearch, AFewDigsAreASearchToo) {
+  for (const int digs : {1, 2, 5}) {
+    DigSearchOptions options = small_search(1);
+    options.stop.evaluations = digs;
+    EXPECT_TRUE(search_screened(machine_, simulator_, level_planning_ground(machine_), options))
+        << digs;
+  }
+  DigSearchOptions endless = small_search(1);
+  endless.stop.evaluations = 100000000;
+  EXPECT_THROW(search_screened(machine_, simulator_, level_planning_ground(machine_), endless),
+               Error);
+}
+
 TEST(CoarserGround, HoldsAsMuchSoil) {
   Terrain ground = undisturbed(flat_ground({0.0, 0.0, 0.4, 0.6}, 0.1));
   ground.bank.z(0, 0) = 0.4;

@@ -31,7 +31,7 @@ struct DigSearchResult {
   std::vector<const DigParameterInfo*> at_bound = {};
   SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
   /// DigObjective::rank() of each dig simulated, in the order asked; NaN: it stalled or failed.
-  /// Of search_screened() the first are those on coarser ground.
+  /// Of search_screened() the first are those in coarser steps.
   std::vector<double> ranks = {};
 };
 

@@ -48,7 +48,8 @@ struct PlanOptions {
   /// without `start` begins, in the library of `objective`; the paper's algorithm begins at random
   /// unless `start` or `library` is given. Where `stop.evaluations` is 0 the default method makes
   /// evaluation_budget() digs; without any stop rule, with a start that is searched and in the
-  /// default simulator it is screened where that tells the best dig (docs/methods.md#planning).
+  /// default simulator it is screened, unless the method has numbers of its own
+  /// (docs/methods.md#planning).
   DigSearchOptions search = budget_search();
   SimulatorKind simulator = default_simulator();  ///< digs what is searched or not on level ground
   TrajectoryOptions trajectory = {};              ///< how fast the machine moves

@@ -22,8 +22,9 @@ struct Screening {
 Terrain coarser(const Terrain& terrain, int cells);
 
 /// A search in coarser steps, or on coarser ground, and from its best digs on a polish in fine
-/// steps on the ground itself. Where starts are searched, by MemeticSearch, the first looks all
-/// over the reach (docs/methods.md#planning); else it is search_dig(). All figures are those of a
+/// steps on the ground itself. Where starts are searched, by MemeticSearch within
+/// `stop.evaluations`, the first looks all over the reach, with numbers of its own
+/// (docs/methods.md#planning); else it is search_dig(). All figures are those of a
 /// dig there; evaluations and ranks are those of both. Where the first finds no feasible dig, or
 /// none with a feasible dig near it, search_dig() follows. A checkpoint is of the polish alone;
 /// what precedes it is done again.
