@@ -164,17 +164,7 @@ class Memetic {
 
   /// The best point, and the next that lie apart from those before.
   std::vector<int> best_apart(int count) const {
-    std::vector<int> chosen;
-    for (const int place : all_best_first()) {
-      if (static_cast<int>(chosen.size()) == count || !promises(log_[place].outcome)) break;
-      if (std::none_of(chosen.begin(), chosen.end(), [&](int other) {
-            return cube_.distance(log_[place].point, log_[other].point) <=
-                   apart * method_.basin_radius;
-          })) {
-        chosen.push_back(place);
-      }
-    }
-    return chosen;
+    return apart(all_best_first(), count, near_best * method_.basin_radius, {});
   }
 
   void breed() {
@@ -224,15 +214,21 @@ class Memetic {
 
   /// The first few places that lie in no basin polished so far, nor in one another's.
   std::vector<int> separate(const std::vector<int>& places, int count) const {
+    return apart(places, count, method_.basin_radius, polished_);
+  }
+
+  /// The first few places that promise something and lie farther than a radius from one another and
+  /// from others.
+  std::vector<int> apart(const std::vector<int>& places, int count, double radius,
+                         const std::vector<int>& others) const {
     std::vector<int> chosen;
-    const auto near = [&](int place, int other) {
-      return cube_.distance(log_[place].point, log_[other].point) <= method_.basin_radius;
-    };
     for (const int place : places) {
       if (static_cast<int>(chosen.size()) == count || !promises(log_[place].outcome)) break;
-      const auto taken = [&](int other) { return near(place, other); };
+      const auto taken = [&](int other) {
+        return cube_.distance(log_[place].point, log_[other].point) <= radius;
+      };
       if (std::none_of(chosen.begin(), chosen.end(), taken) &&
-          std::none_of(polished_.begin(), polished_.end(), taken)) {
+          std::none_of(others.begin(), others.end(), taken)) {
         chosen.push_back(place);
       }
     }
@@ -267,7 +263,7 @@ class Memetic {
   static constexpr double first_step = 0.1;
   static constexpr double restart_step = 0.15;
   static constexpr double longest_first_step = 0.06;  // of an evolution, which lengthens its own
-  static constexpr double apart = 0.25;               // of the radius of a basin
+  static constexpr double near_best = 0.25;           // of the radius of a basin
   static constexpr double widest = 0.2;
   static constexpr std::size_t elite_size = 10;  // several: under noise the best is often no better
 
