@@ -406,6 +406,23 @@ TEST_F(PlanDig, AScreenedSearchIsAsGoodWhereTheBestDigsAreAtAnEdge) {
   EXPECT_GT(in_hard.dig->fill, 0.98 * thorough.dig->fill);
 }
 
+// In the pit of three digs the most payload per energy of the dig is in a bucket that is nearly
+// empty.
+TEST_F(PlanDig, ForTheEnergyOfTheDigAloneTheDigIsWorthMakingToo) {
+  Terrain pit = rising(0.0);
+  const auto simulator = default_simulator().make(machine_, loam_, 80.0);
+  DigSearchOptions search = budget_search();
+  search.objective = DigObjective::Goal::energy;
+  for (int i = 0; i < 3; ++i) {
+    apply(simulator->dig(pit, search_dig(machine_, *simulator, pit, search)->path).patch, pit);
+  }
+  PlanOptions options = searched(0);
+  options.search.objective = DigObjective::Goal::energy;
+  const DigPlan found = plan_dig(machine_, loam_, 80.0, pit, options);
+  ASSERT_TRUE(found.dig) << found.reason;
+  EXPECT_GE(found.dig->fill, 0.1);
+}
+
 TEST_F(PlanDig, OwnNumbersOfAPolishCount) {
   PlanOptions few = searched(0, 1), many = searched(0, 1);
   std::get<MemeticSearch>(few.search.method).polish_evaluations = 5;
