@@ -26,7 +26,6 @@ set(thorough_ground_test
 # Errors of a shadow, blocks and accuracy in every case; their means, one case each, stay.
 set(thorough_change_test
   Falls/PitInShadow.HasAnErrorThatCoversWhatALedgeHides/*
-  ShadowFilling.KeepsTrustInAHoleUpToThirtyFivePercentInShadow
   Blocks.AreFoundInEveryHeapOfThem
   Blocks.VoidsAreEstimatedWithinTheirStandardDeviation
   Blocks.SizeIsToldToAFifth
@@ -39,8 +38,7 @@ set(thorough_change_test
   Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/rough
   Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/moved
   Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/correlated
-  Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/unseen
-  From/FarFlank.ErrsByTwoDegreesInTheVolumeOfTheHeap/*)
+  Scans/AccuracyOfBulking.MeetsItsBarWithinItsInterval/unseen)
 # Six hundred fields, refitted after each dig.
 set(thorough_belief_test
   BeliefStatistics.IsNearExactBayesWithWhatIsRefittedAfterEachDig

@@ -57,13 +57,14 @@ struct Pit {
 };
 
 bool is_seen(const Shape& shape, const Eigen::Vector3d& point, const Eigen::Vector3d& sensor) {
-  constexpr double step = 0.01;
+  constexpr double step = 0.02;
   constexpr double highest = 0.6;
   const Eigen::Vector3d way = sensor - point;
   const Eigen::Vector3d stride = way * step / way.head<2>().norm();
-  Eigen::Vector3d at = point + 0.1 * stride;
-  for (; at.z() < highest; at += stride) {
-    if (shape(at.x(), at.y()) > at.z() + 1e-9) return false;
+  const double dx = stride.x(), dy = stride.y(), dz = stride.z();
+  double x = point.x() + 0.1 * dx, y = point.y() + 0.1 * dy, z = point.z() + 0.1 * dz;
+  for (; z < highest; x += dx, y += dy, z += dz) {
+    if (shape(x, y) > z + 1e-9) return false;
   }
   return true;
 }

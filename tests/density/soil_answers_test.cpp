@@ -296,6 +296,18 @@ TEST_F(SoilAnswers, ReadingsAreReadAsTheAnswerIs) {
   }
 }
 
+TEST_F(SoilAnswers, AReadingOfAnotherHeapOfBlocksHasAsManyVoidsForItsSize) {
+  DensityEstimate known;
+  known.change = exact(40.0, paper_fixed_path()).change;
+  const double k = bulking_factor(known.change)->value;
+  known.change.readings = {reading_of(k, 0.8), reading_of(1.05 * k, 0.2)};
+  known.blocks.voids = Measured{0.1 * known.change.after.value, 0.0};
+  const DensityEstimate found = test::estimate_of(known, loam_.law, in(loam_));
+  EXPECT_NEAR(found.readings[1].density_percent,
+              density_of_bulking(found.law.form, 1.05 * found.corrected->value), 1e-9);
+  EXPECT_NEAR(found.corrected->value, 0.9 * k, 1e-6);
+}
+
 TEST_F(SoilAnswers, TheIntervalHasOneInFortyOfTheReadingsOnEitherSide) {
   const SoilDig dig = exact(40.0, paper_fixed_path());
   const double k = bulking_factor(dig.change)->value;

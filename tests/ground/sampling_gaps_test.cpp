@@ -148,6 +148,16 @@ TEST(Stripes, AreTakenOffStableGroundAndZones) {
   }
 }
 
+TEST(Stripes, OfTwoScansAreTakenOffAlongBothDirections) {
+  ChangedGround ground = striped(0.004, 0.2);
+  const Eigen::ArrayXXd other = striped(0.004, 1.3).difference;
+  ground.difference += other;
+  ground.residual += other;
+  const double before = ground.difference.block(30, 30, 20, 20).square().mean();
+  take_stripes_off(ground);
+  EXPECT_LT(ground.difference.block(30, 30, 20, 20).square().mean(), 0.3 * before);
+}
+
 TEST(Stripes, AreNotFoundInPlainNoise) {
   ChangedGround ground = striped(0.0, 0.6);
   const Eigen::ArrayXXd before = ground.difference;

@@ -3,6 +3,7 @@
 #include "planning/front_room.hpp"
 #include "ground/obstacles.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <variant>
@@ -130,6 +131,18 @@ TEST_F(FrontRoomOf, NoDigGoesThroughWhatStandsInTheStrip) {
     EXPECT_GT(lowest_at(plan.path, 4.55, 4.85), 1.0);
   }
   EXPECT_FALSE(warns(planned(with_block(0.3, 4.6, 4.8, 0.1, -0.1)), "obstacle_in_strip"));
+}
+
+TEST_F(FrontRoomOf, WhatStandsBesideTheStripIsNotSaidToStandInIt) {
+  const double half = 0.5 * machine_.bucket.width_outside;
+  for (const double side : {1.0, -1.0}) {
+    const auto from = [&](double y) {
+      const double near = side * y, far = side * (y + 0.5);
+      return planned(with_block(0.9, 4.6, 4.8, std::max(near, far), std::min(near, far)));
+    };
+    EXPECT_FALSE(warns(from(half + 0.1), "obstacle_in_strip")) << side;
+    EXPECT_TRUE(warns(from(half - 0.1), "obstacle_in_strip")) << side;
+  }
 }
 
 /// The bucket too keeps clear of what stands beside the strip.

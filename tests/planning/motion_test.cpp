@@ -183,6 +183,28 @@ TEST(Motion, SwingKeepsItsTorqueWhileTheFrontMovesOut) {
   }
 }
 
+// An arm that goes in and out in waves: the swing of the smoothed motion is checked by itself.
+TEST(Motion, SwingKeepsItsTorqueWhileTheFrontMovesInAndOut) {
+  Machine machine = zx120();
+  machine.swing->torque = 2e3;
+  machine.engine.reset();
+  MotionCase made;
+  made.machine = machine;
+  made.options.speed_fraction = 1.0;
+  made.options.rate = 500.0;
+  made.options.corner_tolerance = 0.01;
+  for (int i = 0; i <= 40; ++i) {
+    const double swing = 0.05 * i;
+    made.way.poses.push_back({DigPhase::approach,
+                              front(-0.3, 1.5 + 0.15 * std::sin(10.0 * swing), 0.0, swing),
+                              JointAngles::Zero()});
+  }
+  const Trajectory motion = time_way(machine, made.way, made.options);
+  const double used = used_between(made, motion, quintic).swing_torque;
+  EXPECT_LE(used, 1.0 + 1e-6);
+  EXPECT_GE(used, 0.99);
+}
+
 TEST(Motion, BeginsAndEndsAtRestWhereItsWayDoesAtTheRate) {
   const Way way = straight(front(-0.3, 1.5, 0.0), front(0.1, 1.0, 0.5, -0.4));
   MotionOptions options;

@@ -187,6 +187,16 @@ TEST(DamagedRecordings, OfMcapWithWrongIndexesSayWhatIsWrong) {
        {"opcode 0", in_mcap(8, 1, 0, 0, 1), "a record of opcode 0, expected one of 1 to 255"}});
 }
 
+// Behind the data a file is not scanned: a summary that is damaged is told once.
+TEST(DamagedRecordings, OfMcapWithADamagedSummaryAreScannedUpToTheEndOfTheirData) {
+  const TempFolder folder;
+  string content = content_of(recording("scene_none.mcap"));
+  in_mcap(8, 1, 1, huge, 8)(content);
+  const auto file = open_recording(folder.write("summary.mcap", content));
+  EXPECT_EQ(all_messages(*file).size(), 38u);
+  EXPECT_EQ(file->skipped().parts().size(), 1u);
+}
+
 /// Spoils the first message index of each chunk between two times [s of the scene].
 /// @return how many
 int spoil_indexes_between(string& bytes, double from, double to) {

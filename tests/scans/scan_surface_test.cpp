@@ -708,5 +708,20 @@ TEST(ScanSurface, RoundedHeightsAreTold) {
   EXPECT_NEAR(step_of(0.03, 40), 0.03, 1e-6) << "but for 40 points";
 }
 
+/// Steps of a drawing are heights that a few points share each.
+TEST(ScanSurface, HeightsThatFewPointsShareAreNotRounded) {
+  const Folder folder;
+  const auto step_of = [&](int points_at_each) {
+    Points points;
+    for (int i = 0; i < 10 * points_at_each; ++i) {
+      const double along = 0.07 * i;
+      points.emplace_back(along, std::fmod(0.31 * i, 1.0), 0.02 * (i / points_at_each));
+    }
+    return outline(scan_of({folder.write("steps.pcd", points)})).height_step;
+  };
+  EXPECT_EQ(step_of(5), 0.0);
+  EXPECT_NEAR(step_of(12), 0.02, 1e-6);
+}
+
 }  // namespace
 }  // namespace excavplan

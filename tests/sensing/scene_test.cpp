@@ -11,6 +11,7 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/change/bulking.hpp>
 
+#include "sensing/block_heap.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
@@ -171,6 +172,27 @@ TEST_F(HardSoil, BlocksAreThoseOfTheirSizeAndSeed) {
   settings = {};
   settings.fines = 0.0;
   EXPECT_GT(broken(settings).blocks->voids, 1.2 * first.blocks->voids);
+}
+
+/// On a strip hardly wider than a block most drops find no room, which is no end of it; where none
+/// finds any, it is.
+TEST(BlocksOfRise, FindRoomWhereFewDropsDo) {
+  const auto dropped = [](double width) {
+    const HeightMap before = flat_ground({-1.0, -1.0, 1.0, 1.0}, 0.02);
+    HeightMap after = before;
+    for (Eigen::Index row = 0; row < after.z.rows(); ++row) {
+      after.z.row(row) = std::abs(after.y(row)) < 0.5 * width ? 0.5 : std::nan("");
+    }
+    BlockSettings settings;
+    settings.fines = 0.0;
+    return blocks_of_rise(before, after, 0.05, settings);
+  };
+  const BlockLayer layer = dropped(0.3);
+  EXPECT_GT(layer.count, 5);
+  EXPECT_EQ(layer.soil, 0.05);
+  EXPECT_GT(layer.voids, 0.0);
+  EXPECT_EQ(test::error_of([&] { dropped(0.04); }),
+            "blocks: blocks of 0.15 m find no room where soil rose");
 }
 
 TEST_F(HardSoil, SofterGroundCrumbles) {

@@ -17,6 +17,7 @@
 #include "base/angles.hpp"
 #include "base/random.hpp"
 #include "simulation/section_bucket.hpp"
+#include "simulation/section_resistance.hpp"
 #include "simulation/soil_section.hpp"
 #include "support/errors.hpp"
 #include "support/machine_file.hpp"
@@ -435,6 +436,27 @@ class SectionGround : public testing::Test {
   const SoilState loose_ = loose_state(kind_);
   const Terrain level_ = undisturbed(flat_ground({0.0, -2.0, 4.0, 2.0}, 0.05));
 };
+
+/// A lip that climbs by more than the ground shears soil off besides pushing it: less is pushed,
+/// none where it rises upright (docs/methods.md#simulation).
+TEST_F(SectionGround, TheWedgeThatIsPushedEndsAsTheLipRisesUpright) {
+  const SectionModel model(test::zx120_held_down(), kind_, 40.0);
+  const SoilSection section = section_on(level_);
+  BucketSection bucket(model.machine.bucket);
+  bucket.turn_to(0.5);
+  const auto length = [&](double climb) {
+    Cutting cut;
+    cut.tip = {2.0, -0.2, 0.3};
+    cut.motion = {-std::cos(climb), std::sin(climb)};
+    cut.ground = section.ahead(2.0);
+    cut.bank = section.bank_of(cut.ground.void_ratio);
+    cut.loose = section.loose_of(cut.ground.loose_void_ratio);
+    return section_resistance(model, section, cut, bucket, DigPhase::drag).wedge_length;
+  };
+  EXPECT_GT(length(0.0), 0.2);
+  EXPECT_LT(length(89.0 * degree), 0.1 * length(0.0));
+  EXPECT_NEAR(length(90.0 * degree), 0.0, 1e-12);
+}
 
 // docs/methods.md#simulation: a heap of mean height h > b s over the width b is a triangle. One of
 // area A whose sides fall by s is sqrt(A s) high. Within 2 mm: sum over cells of 5 cm.

@@ -62,14 +62,42 @@ std::string svg_of(const Panel& panel, const SheetSize& size = {}) {
   return to_svg(lay_out(figure_of(panel), size));
 }
 
-/// The first line of a colour, from its first to its last point [pt].
-Eigen::Vector2d way_of(const std::string& svg, const std::string& colour) {
+struct Ends {
+  Eigen::Vector2d first, last;
+};
+
+/// Of the first line of a colour [pt].
+Ends ends_of(const std::string& svg, const std::string& colour) {
   const auto end = svg.find("\" fill=\"none\" stroke=\"" + colour);
   const auto start = svg.rfind("d=\"M", end) + 4;
   const auto point = [&](std::size_t at) {
     return Eigen::Vector2d(std::stod(svg.substr(at)), std::stod(svg.substr(svg.find(' ', at))));
   };
-  return point(svg.rfind('L', end) + 1) - point(start);
+  return {point(start), point(svg.rfind('L', end) + 1)};
+}
+
+Eigen::Vector2d way_of(const std::string& svg, const std::string& colour) {
+  const Ends ends = ends_of(svg, colour);
+  return ends.last - ends.first;
+}
+
+TEST(Panel, EqualAspectShowsAllOfTheViewOnSheetsOfAnyShape) {
+  for (const Eigen::Vector2d& size : {Eigen::Vector2d(100.0, 10.0), Eigen::Vector2d(10.0, 100.0)}) {
+    Panel panel("", "x", "y");
+    panel.equal_aspect();
+    panel.view({0.0, 0.0, size.x(), size.y()});
+    panel.line({{0.0, 0.0}, {size.x(), size.y()}}, {"#123456"});
+    for (const Eigen::Vector2d& sheet :
+         {Eigen::Vector2d(170.0, 60.0), Eigen::Vector2d(60.0, 170.0)}) {  // [mm]
+      const Ends ends = ends_of(svg_of(panel, {sheet.x(), sheet.y()}), "#123456");
+      const Eigen::Array2d page = sheet.array() * 72.0 / 25.4;
+      for (const Eigen::Vector2d& end : {ends.first, ends.last}) {
+        EXPECT_TRUE((end.array() >= 0.0).all() && (end.array() <= page).all()) << end.transpose();
+      }
+      const Eigen::Vector2d way = ends.last - ends.first;
+      EXPECT_NEAR(-way.y() / way.x(), size.y() / size.x(), 0.05 * size.y() / size.x());
+    }
+  }
 }
 
 TEST(Panel, EqualAspectShowsAMetreEquallyLong) {
