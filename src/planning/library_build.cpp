@@ -132,6 +132,12 @@ Interpolation interpolation(const DigObjective& objective, const PlannedDig& bel
           between};
 }
 
+/// Whose digs are worth making where the goal lets the bucket be empty.
+LibraryJob job_of(LibraryGrid grid, LibrarySearch search) {
+  search.objective.min_fill = std::max(search.objective.min_fill, worth_making);
+  return {std::move(grid), std::move(search)};
+}
+
 /// Lays out all tasks of a build, and has them done.
 ///
 /// Every entry is searched. Then, once up and once down each slope, an entry is searched again
@@ -141,7 +147,7 @@ Interpolation interpolation(const DigObjective& objective, const PlannedDig& bel
 class Build {
  public:
   Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
-      : job_{grid, options.search},
+      : job_(job_of(grid, options.search)),
         options_(options),
         watch_(options),
         queue_(options.folder.empty() ? 0 : std::random_device{}()) {
@@ -400,7 +406,7 @@ class Build {
             search.simulator.name,
             search.cell_size,
             search.seed,
-            search.objective,
+            options_.search.objective,
             describe(search),
             {},
             {}};
@@ -450,7 +456,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
 
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
   require_buildable(grid, search);
-  return [job = LibraryJob{std::move(grid), std::move(search)}](const std::string& task) {
+  return [job = job_of(std::move(grid), std::move(search))](const std::string& task) {
     return do_task(job, task, {});
   };
 }

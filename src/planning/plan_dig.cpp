@@ -37,7 +37,6 @@ constexpr double much_steeper =
     0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
-constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 // Of a search that is screened; ours, docs/methods.md#planning.
 constexpr int screened_digs = 900;

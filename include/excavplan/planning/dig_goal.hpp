@@ -9,6 +9,9 @@
 
 namespace excavplan {
 
+/// Fill of the bucket below which a dig is not worth making, for plans and libraries; ours.
+inline constexpr double worth_making = 0.1;
+
 /// The objective that a search of digs maximises.
 struct DigObjective : CycleOptions {
   /// What is maximised.
