@@ -79,6 +79,12 @@ bool DigObjectiveParameter::matters_to(const DigGoalInfo& goal) const {
 
 DigObjective::DigObjective(Goal of) : goal(of), min_fill(info_of(of).min_fill) {}
 
+DigObjective DigObjective::worthwhile() const {
+  DigObjective objective = *this;
+  objective.min_fill = std::max(min_fill, worth_making);
+  return objective;
+}
+
 double DigObjective::worth(const PlannedDig& dig) const { return info_of(goal).worth(*this, dig); }
 
 double DigObjective::rank(double worth, double fill) const {

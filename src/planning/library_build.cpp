@@ -134,7 +134,7 @@ Interpolation interpolation(const DigObjective& objective, const PlannedDig& bel
 
 /// Whose digs are worth making where the goal lets the bucket be empty.
 LibraryJob job_of(LibraryGrid grid, LibrarySearch search) {
-  search.objective.min_fill = std::max(search.objective.min_fill, worth_making);
+  search.objective = search.objective.worthwhile();
   return {std::move(grid), std::move(search)};
 }
 

@@ -426,7 +426,7 @@ void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
   DigSearchOptions options = task.options.search;
-  options.objective.min_fill = std::max(options.objective.min_fill, worth_making);
+  options.objective = options.objective.worthwhile();
   if (options.start.empty() && begins_known(task)) options.start = known_start(task, plan);
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {

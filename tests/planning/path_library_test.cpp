@@ -921,8 +921,7 @@ TEST_P(ShippedLibrary, LosesLittleBetweenItsSlopes) {
 
 /// A long search from nothing is the yardstick.
 TEST_P(ShippedLibrary, HoldsNearlyTheBestDigs) {
-  DigObjective least = objective_;
-  least.min_fill = std::max(least.min_fill, worth_making);
+  const DigObjective least = objective_.worthwhile();
   std::vector<PathLibraryEntry> some;
   const std::vector<PathLibraryEntry> level = level_entries();
   for (std::size_t i = 0; i < level.size(); i += 4) some.push_back(level[i]);

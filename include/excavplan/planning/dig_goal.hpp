@@ -29,6 +29,9 @@ struct DigObjective : CycleOptions {
   /// With the goal's usual min_fill.
   DigObjective(Goal of = Goal::energy);  // NOLINT: a goal is an objective
 
+  /// The same, with a min_fill of worth_making at least.
+  DigObjective worthwhile() const;
+
   /// Larger is better; 0 for a dig that costs nothing, NaN for one with a figure that is NaN.
   double worth(const PlannedDig& dig) const;
   /// What searches maximise: the worth, and of a dig that fills less than min_fill a half of it and
