@@ -71,7 +71,7 @@ constexpr double least_cleared = 0.015;  // or clears, for later ones [m^3]
 constexpr double wall_from = 0.5;        // before the end, soil that later digs would leave [m]
 constexpr double wall_to = 0.12;         // likewise [m]
 constexpr double least_of_flatter = 0.5;     // of what a flatter cut there is worth
-constexpr double high_wall = 0.03;           // of that soil, to be cut before all else [m]
+constexpr double high_wall = 0.04;           // where it is highest, to be cut first [m]
 constexpr double most_doubt_at_wall = 1.42;  // of the soil's strength
 constexpr double wall_worth = 1.0;           // of that soil, beyond that of other soil
 constexpr double shortest_drag = 0.2;        // [m]
@@ -630,8 +630,10 @@ class StepSearch {
 
   /// Whether soil stands before the end of the work.
   bool has_end_wall(const Lane& lane) const {
-    return lane.mean_over(lane.line.far - wall_from, lane.line.far - wall_to,
-                          [&](Index col) { return lane.excess(col); }) > high_wall;
+    return lane.mean_over(lane.line.far - wall_from, lane.line.far - wall_to, [&](Index col) {
+      const double x = lane.view.x(col);
+      return lane.ground(x) - lane.floor(x);
+    }) > high_wall;
   }
 
   /// Steep layers from the end of the work: a flat cut would leave a ramp there, which is
