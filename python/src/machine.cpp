@@ -131,8 +131,8 @@ Array tips_of(const DigPath& path) {
                        [](const DigPose& pose) { return numbers_of_pose(pose.bucket); });
 }
 
-GroundProfile profile_of(const std::optional<HeightMap>& ground) {
-  if (ground) return boom_plane_profile(*ground);
+GroundProfile profile_of(const std::optional<HeightMap>& ground, const Machine& machine) {
+  if (ground) return start_profile(*ground, machine);
   return [](double) { return 0.0; };
 }
 
@@ -186,7 +186,7 @@ void bind_path(py::module_& module) {
       [](const Machine& machine, const DigParameters& parameters, std::optional<double> start_x,
          const std::optional<HeightMap>& ground, bool planned) {
         require_machine(machine);
-        const GroundProfile profile = profile_of(ground);
+        const GroundProfile profile = profile_of(ground, machine);
         const DigPathOptions rules = planned ? rules_for_planned_path() : DigPathOptions{};
         return call([&] {
           return start_x ? make_dig_path(machine, parameters, *start_x, profile, rules)

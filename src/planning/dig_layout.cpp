@@ -54,7 +54,7 @@ bool KnownStrip::is_known(double x_min, double x_max) const {
 DigLayout::DigLayout(const Machine& machine, const Terrain& terrain, DigPathOptions rules)
     : machine_(required(machine)),
       rules_(std::move(rules)),
-      ground_(boom_plane_profile(terrain)),
+      ground_(start_profile(terrain, machine)),
       strip_(terrain, machine),
       room_(terrain, machine) {}
 

@@ -26,7 +26,7 @@ namespace excavplan {
 namespace {
 
 DigPath lay_out(const Machine& machine, const Terrain& ground, const SceneOptions& options) {
-  const GroundProfile profile = boom_plane_profile(ground);
+  const GroundProfile profile = start_profile(ground, machine);
   auto path = options.start_x
                   ? make_dig_path(machine, options.path, *options.start_x, profile, options.rules)
                   : make_dig_path_anywhere(machine, options.path, profile, options.rules);

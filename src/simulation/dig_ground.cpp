@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/check.hpp"
+#include "base/statistics.hpp"
 #include "ground/map_check.hpp"
 #include "ground/terrain.hpp"
 
@@ -103,6 +104,32 @@ GroundProfile boom_plane_profile(const Terrain& terrain) {
                     terrain.bank.z.middleRows(rows.first, rows.count) +
                         terrain.loose.middleRows(rows.first, rows.count),
                     rows.first);
+}
+
+GroundProfile start_profile(const HeightMap& surface, const Machine& machine) {
+  require_grid(surface, "ground profile");
+  require_machine(machine);
+  const double half = 0.5 * machine.bucket.width_outside;
+  Eigen::ArrayXXd medians(1, surface.z.cols());
+  std::vector<double> known;
+  for (Index col = 0; col < surface.z.cols(); ++col) {
+    known.clear();
+    Index count = 0;
+    for (Index row = 0; row < surface.z.rows(); ++row) {
+      if (std::abs(surface.y(row)) > half) continue;
+      ++count;
+      if (const double z = surface.z(row, col); !std::isnan(z)) known.push_back(z);
+    }
+    const bool is_known = !known.empty() && 2 * static_cast<Index>(known.size()) >= count;
+    medians(0, col) = is_known ? mean_median(known) : std::numeric_limits<double>::quiet_NaN();
+  }
+  const HeightMap strip{{surface.origin.x(), -0.5 * surface.cell_size}, surface.cell_size, medians};
+  return [strip](double x) { return height_at(strip, x, 0.0); };
+}
+
+GroundProfile start_profile(const Terrain& terrain, const Machine& machine) {
+  require_terrain(terrain, "ground profile");
+  return start_profile(terrain.surface(), machine);
 }
 
 GroundProfile profile_under_bucket(const HeightMap& surface, const Machine& machine) {

@@ -370,6 +370,7 @@ TEST(HostileTerrain, LayersOfOtherSizesAreRefused) {
   for (const Terrain& bad : {Terrain{}, thin, wide, dense, moved}) {
     EXPECT_TRUE(refuses([&] { simulator->dig(bad, path()); }, "dig: "));
     EXPECT_TRUE(refuses([&] { boom_plane_profile(bad); }, "ground profile: "));
+    EXPECT_TRUE(refuses([&] { start_profile(bad, zx120()); }, "ground profile: "));
     EXPECT_TRUE(refuses([&] { boom_plane_slope(bad, 2.0); }, "ground profile: "));
     EXPECT_TRUE(refuses(
         [&] {

@@ -876,6 +876,28 @@ TEST(BoomPlaneProfile, IsTheSurfaceInTheBoomPlane) {
   EXPECT_TRUE(std::isnan(profile(9.0)));
 }
 
+/// In a furrow the boom plane is its bottom, and one row of cells of a scan is off by its noise.
+TEST(StartProfile, IsTheMedianUnderTheBucket) {
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  HeightMap map = flat_ground({0, -1.5, 6, 1.5}, 0.05);
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row)
+      map.z(row, col) = 0.1 * map.x(col) + std::min(0.0, std::abs(map.y(row)) - 0.5);
+  }
+  const double half = 0.5 * machine.bucket.width_outside;
+  EXPECT_NEAR(start_profile(map, machine)(2.0), 0.2 + 0.5 * half - 0.5, 0.01);
+  HeightMap noisy = map;
+  const Eigen::Index middle = noisy.z.rows() / 2;
+  noisy.z.middleRows(middle - 1, 2) += 0.05;
+  EXPECT_NEAR(start_profile(noisy, machine)(2.0), start_profile(map, machine)(2.0), 1e-9);
+  noisy.z.topRows(middle).setConstant(std::nan(""));
+  EXPECT_TRUE(std::isfinite(start_profile(noisy, machine)(2.0)));
+  noisy.z.topRows(middle + 2).setConstant(std::nan(""));
+  EXPECT_TRUE(std::isnan(start_profile(noisy, machine)(2.0)));
+  EXPECT_TRUE(std::isnan(start_profile(map, machine)(9.0)));
+  EXPECT_EQ(start_profile(undisturbed(map), machine)(2.0), start_profile(map, machine)(2.0));
+}
+
 // The paper's regression (section 3.1): d = 161.57 k - 152.87, R2 = 0.9811; curvature of the exact
 // law alone gives 0.983 (docs/methods.md#density-law).
 TEST(Calibration, SimulatorFreedOfFallbackGivesThePapersLine) {

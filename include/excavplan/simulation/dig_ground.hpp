@@ -54,6 +54,11 @@ Terrain level_swing_ground(const Machine& machine);
 /// of cells that it needs.
 GroundProfile boom_plane_profile(const HeightMap& surface);
 GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
+/// Where the edge of a bucket in the boom plane enters the ground, for make_dig_path(): the median
+/// of the heights under its width, of which the noise of a scan moves one row of cells by several
+/// centimetres and all of them by few millimetres. NaN where less than half of the width is known.
+GroundProfile start_profile(const HeightMap& surface, const Machine& machine);
+GroundProfile start_profile(const Terrain& terrain, const Machine& machine);  ///< of its surface
 
 /// Mean height of a surface over the width of the bucket and 0.15 m to both sides of x (ours): for
 /// scans, where the noise of one cell would move a path. Keeps a reference to the surface.
