@@ -631,8 +631,7 @@ class StepSearch {
   /// Whether soil stands before the end of the work.
   bool has_end_wall(const Lane& lane) const {
     return lane.mean_over(lane.line.far - wall_from, lane.line.far - wall_to, [&](Index col) {
-      const double x = lane.view.x(col);
-      return lane.ground(x) - lane.floor(x);
+      return lane.ground(lane.view.x(col)) - lane.floor(lane.view.x(col));
     }) > high_wall;
   }
 
