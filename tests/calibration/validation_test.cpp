@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "base/random.hpp"
@@ -185,6 +187,39 @@ TEST_F(Validation, SameBytesFromEveryCompilerAndOptimisationLevel) {
   hash.add(result.payload_mass);
   hash.add(result.energy.total);
   EXPECT_EQ(hash.value(), 0xf1e773fde2ffa617ULL) << "0x" << std::hex << hash.value();
+}
+
+// Its path and its density are in the middle of what is drawn from.
+TEST_F(Validation, TheScatterOfOneDrawIsTheErrorOfADigInTheMiddle) {
+  CalibrationOptions options;
+  options.densities_percent = {0.0, 30.0, 60.0, 100.0};
+  options.cell_size = 0.2;
+  options.draws = 1;
+  options.scatter = {0.0, 0.0, 0.0};  // in the very soil
+  const DensityCalibration calibration = calibrate_density(machine_, loam_, options);
+  SceneOptions middle;
+  middle.path = {0.8, 0.4, 1.65};
+  const Terrain ground = undisturbed(flat_ground(scene_extent(machine_, middle.dump_at), 0.05));
+  const double k =
+      run_scene(that_never_stalls(machine_), loam_, 50.0, ground, middle).volumes.bulking_factor;
+  for (const char* key : {"line_as_measured", "closed_form_as_measured"}) {
+    const DensityForm& form = calibration.form(key);
+    EXPECT_NEAR(residual_sd_at(form, 50.0), std::abs(density_of_bulking(form, k) - 50.0), 1e-6)
+        << key;
+  }
+}
+
+// A soil of another site keeps the name of its kind.
+TEST_F(Validation, TheUsualLawIsThatOfTheVerySameSoilNotOfTheSameName) {
+  SoilKind own = loam_;
+  own.void_ratio_loose *= 0.95;
+  std::vector<SoilLaw> known(2);
+  known[0].soil = loam_;
+  known[0].law.name = "of loam";
+  known[1].soil = own;
+  known[1].law.name = "of its own";
+  EXPECT_EQ(usual_law(machine_, loam_, known).name, "of loam");
+  EXPECT_EQ(usual_law(machine_, own, known).name, "of its own");
 }
 
 }  // namespace

@@ -155,11 +155,29 @@ TEST(JobBeside, FromThereSoilIsLaidAsFarAcrossAsItGoes) {
   const JobStation& place = all->places.at(4);
   const BasePose base =
       ahead_of(base_at(*line, place, job.ground, job.settings.site.machine), *line);
-  const auto dump =
-      dump_place(job.settings, job.map(), job.ground, base, {0.0, false, 1.0, line->tracks});
-  ASSERT_TRUE(dump);
-  EXPECT_LT(std::abs(dump->swing), 0.1);
-  EXPECT_GT((dump->place.head<2>() - Eigen::Vector2d(base.x, base.y)).norm(), 6.5);
+  for (const double load : {1.0, 0.3}) {  // a small one finds room nearer too
+    const auto dump =
+        dump_place(job.settings, job.map(), job.ground, base, {0.0, false, load, line->tracks});
+    ASSERT_TRUE(dump);
+    EXPECT_LT(std::abs(dump->swing), 0.1);
+    EXPECT_GT((dump->place.head<2>() - Eigen::Vector2d(base.x, base.y)).norm(), 6.75);
+  }
+}
+
+TEST(DumpPlace, TheLimitsOfTheSwingAreThoseFromTheTracks) {
+  HandMadeJob job = leaning_trench();
+  const auto all = beside(job);
+  ASSERT_TRUE(all);
+  const Machine& machine = job.settings.site.machine;
+  const BasePose base =
+      ahead_of(base_at(all->line, all->places.at(4), job.ground, machine), all->line);
+  const DumpRules across = {0.0, false, 1.0, all->line.tracks};
+  for (const double limit : {1.7, 1.4}) {
+    job.settings.site.machine.swing->lower = -limit;
+    job.settings.site.machine.swing->upper = limit;
+    const auto dump = dump_place(job.settings, job.map(), job.ground, base, across);
+    EXPECT_EQ(dump.has_value(), limit > 0.5 * pi) << limit;
+  }
 }
 
 TEST(DumpPlace, ASmallLoadFindsRoomWhereABucketfulDoesNot) {

@@ -103,6 +103,22 @@ TEST_F(FrontRoomOf, ALinkThatHangsBetweenTheCentresOfTwoColumnsIsSeen) {
   EXPECT_EQ(contact->z, 2.0);
 }
 
+/// As to every side of it.
+TEST_F(FrontRoomOf, WhatStandsIsKeptClearOfInFrontOfItAndBehindIt) {
+  const Terrain post = with_obstacles(with_block(2.0, 5.0, 5.2, 0.1, -0.1));
+  ASSERT_GT(post.obstacles.size(), 0);
+  const FrontRoom room(post, machine_);
+  const auto touches = [&](double x) {
+    LinkPositions hanging;
+    hanging.arm_pin = {x, 4.0};
+    hanging.bucket_pin = {x, 2.05};
+    hanging.along.fill(Eigen::Vector2d::UnitY());  // the bucket is turned up
+    return room.contact(hanging).has_value();
+  };
+  for (const double x : {4.92, 5.1, 5.28}) EXPECT_TRUE(touches(x)) << x;
+  for (const double x : {4.82, 5.38}) EXPECT_FALSE(touches(x)) << x;
+}
+
 TEST_F(FrontRoomOf, WhatStandsBesideTheLinksOrUnderTheMachineIsNotInTheirWay) {
   EXPECT_TRUE(std::holds_alternative<DigPath>(laid(with_block(3.0, 3.0, 3.2, 2.0, 0.35))));
   EXPECT_TRUE(std::holds_alternative<Infeasible>(laid(with_block(3.0, 3.0, 3.2, 2.0, 0.1))));

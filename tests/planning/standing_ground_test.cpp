@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -283,6 +284,53 @@ TEST(StandingGround, EveryCheckHasBothItsSigns) {
   }
 }
 
+/// A diagonal view leaves open what lies straight ahead.
+TEST(StandingGround, CornersShowNoSide) {
+  const StandingGround found = standing_ground(
+      zx120(), map_of([](double x, double y) {
+        return std::abs(x) > front_of_tracks && std::abs(y) > half ? 0.0 : std::nan("");
+      }));
+  ASSERT_EQ(found.warnings.size(), 1U);
+  EXPECT_EQ(found.warnings[0].code, WarningCode::ground_at_tracks_unseen);
+  EXPECT_NE(found.warnings[0].message.find("ahead, left, behind, right"), std::string::npos)
+      << found.warnings[0].message;
+  EXPECT_FALSE(found.height || found.rise_ahead || found.rise_left);
+}
+
+TEST(StandingGround, AQuarterOfTheTracksMayNotHangInTheAir) {
+  const auto hollow = [](double ahead, double left, double depth) {
+    return [=](double x, double y) {
+      const double along = ahead * x, across = left * y;
+      const bool is_there = along > 0.0 && along < front_of_tracks && across > 0.0 && across < half;
+      return is_there ? -depth : 0.0;
+    };
+  };
+  for (const auto& [ahead, left, name] : {std::tuple(1.0, 1.0, "front left"),
+                                          {1.0, -1.0, "front right"},
+                                          {-1.0, 1.0, "rear left"},
+                                          {-1.0, -1.0, "rear right"}}) {
+    const auto warnings = standing_ground(zx120(), map_of(hollow(ahead, left, 0.4))).warnings;
+    ASSERT_EQ(warnings.size(), 1U) << name;
+    EXPECT_EQ(warnings[0].code, WarningCode::ground_below_tracks);
+    EXPECT_TRUE(warnings[0].ends_trust);
+    EXPECT_NE(warnings[0].message.find(name), std::string::npos) << warnings[0].message;
+    EXPECT_EQ(codes_on(hollow(ahead, left, 0.25)), Codes{}) << name;
+  }
+}
+
+TEST(StandingGround, AStoneUnderTheTracksIsLessThanSoil) {
+  const auto block = [](double width) {
+    return [=](double x, double y) {
+      return x > 0.0 && x < width && y > 0.0 && y < width ? 0.3 : 0.0;
+    };
+  };
+  EXPECT_EQ(codes_on(block(0.2)), Codes{});
+  const auto warnings = standing_ground(zx120(), map_of(block(0.5))).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].code, WarningCode::soil_under_tracks);
+  EXPECT_EQ(warnings[0].message.find("0.25 m2"), 0U) << warnings[0].message;
+}
+
 TEST(StandingGround, TheOwnCutIsStraightAheadAndNotTooNear) {
   const auto cut = [](double from, double width) {
     return codes_on([=](double x, double y) {
@@ -323,6 +371,14 @@ TEST(StandingGround, SaysWhichGroundItDoesNotKnow) {
                   .warnings[0]
                   .ends_trust == false)
       << "a slope that begins ahead of the tracks";
+}
+
+TEST(StandingGround, AnEarlierScanOnlyFillsWhatThePresentOneDoesNotShow) {
+  const HeightMap present =
+      map_of([](double x, double) { return x > front_of_tracks ? -1.0 : std::nan(""); });
+  const HeightMap both = known_from_both(present, map_of([](double, double) { return 0.1; }));
+  EXPECT_EQ(height_at(both, 3.0, 0.0), -1.0) << "dug since";
+  EXPECT_EQ(height_at(both, -3.0, 0.0), 0.1);
 }
 
 TEST(StandingGround, TracksMayEndBehindTheSwingAxis) {

@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <variant>
+
+#include <Eigen/Geometry>
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/figures/figure_images.hpp>
@@ -100,6 +104,37 @@ TEST(Results, MapsOfADigAreOfItsGround) {
   const Eigen::ArrayXXd& change = maps.back().map.layers.front().values;
   EXPECT_LT(change.minCoeff(), -0.1);
   EXPECT_GT(change.maxCoeff(), 0.1);
+}
+
+// On ground that rises away from the machine, whose path goes on above it.
+TEST(Results, TheOutlineOfAPlannedCutLiesOnTheGroundAboutWhatTheDigLowers) {
+  const Terrain ground = sloped_planning_ground(zx120(), 0.15, 0.1);
+  DigPlan plan;
+  plan.dig.emplace();
+  plan.path = std::get<DigPath>(
+      make_dig_path_anywhere(zx120(), {0.785, 0.35, 1.0}, boom_plane_profile(ground)));
+  const SimulatorKind simulator = default_simulator();
+  const std::vector<NamedMap> maps = plan_maps(zx120(), plan, {loam(), 30.0, ground, simulator});
+  ASSERT_EQ(maps.back().name, "path");
+  const MapLine& outline = maps.back().lines.back();
+  ASSERT_EQ(outline.points.size(), 4U);
+  EXPECT_TRUE(outline.is_closed);
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& corner : outline.points) {
+    box.extend(corner.head<2>());
+    EXPECT_NEAR(corner.z(), std::tan(0.15) * (corner.x() - zx120().track_front), 1e-9);
+  }
+  EXPECT_DOUBLE_EQ(box.min().y(), -0.35);
+  EXPECT_DOUBLE_EQ(box.max().y(), 0.35);
+  ASSERT_EQ(maps[4].name, "footprint");
+  const HeightMap& cells = maps[4].map.ground;
+  const auto lowered = (maps[4].map.layers.front().values == 1.0).colwise().any().eval();
+  Eigen::AlignedBox1d along;
+  for (Eigen::Index col = 0; col < lowered.size(); ++col) {
+    if (lowered(col)) along.extend(Eigen::Matrix<double, 1, 1>(cells.x(col)));
+  }
+  EXPECT_NEAR(box.min().x(), along.min()(0), 0.1);
+  EXPECT_NEAR(box.max().x(), along.max()(0), 0.1);
 }
 
 TEST(Figures, AreEqualForEqualResults) {

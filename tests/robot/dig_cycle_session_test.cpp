@@ -15,8 +15,10 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "recording/times.hpp"
+#include "robot/live_scan.hpp"
 #include "robot/message_clock.hpp"
 #include "robot/recent_joints.hpp"
+#include "robot/recent_transforms.hpp"
 #include "support/errors.hpp"
 #include "support/ros_bytes.hpp"
 
@@ -258,6 +260,54 @@ TEST(DigCycleSession, FramesOutliveAClockThatIsSetBack) {
   robot.scan(now - 100 * second);
   robot.session.start_dig();
   EXPECT_EQ(robot.session.stage(), CycleStage::digging);
+}
+
+/// A frame that was so high at a time.
+StampedTransform raised_to(double height, std::int64_t time, const std::string& child = "lidar") {
+  return {"base", child, time, {0.0, 0.0, 0.0, 1.0}, {0.0, 0.0, height}, false};
+}
+
+double height_of(const RecentTransforms& transforms, std::int64_t time,
+                 const std::string& child = "lidar") {
+  return transforms.tree().lookup("base", child, time).translation().z();
+}
+
+/// A network may change their order.
+TEST(DigCycleSession, TransformsThatComeLateDropNoNewerOnes) {
+  RecentTransforms transforms;
+  for (const auto& [at, height] : {std::pair(10, 2.0), {9, 1.0}, {20, 1.0}}) {
+    transforms.add({raised_to(height, now + at * second)});
+  }
+  EXPECT_EQ(height_of(transforms, now + 10 * second), 2.0);
+  EXPECT_EQ(height_of(transforms, now + 9 * second), 1.0);
+}
+
+TEST(DigCycleSession, AFloodOfTransformsIsNotKeptAndDropsNoOtherFrame) {
+  constexpr int sent = 60000;  // within 9 s
+  constexpr std::int64_t step = second * 9 / sent;
+  RecentTransforms transforms;
+  transforms.add({raised_to(2.0, now, "slow")});
+  for (int i = 0; i < sent; ++i) transforms.add({raised_to(1.0, now + i * step)});
+  EXPECT_EQ(height_of(transforms, now, "slow"), 2.0);
+  EXPECT_EQ(height_of(transforms, now + sent * step), 1.0);
+  EXPECT_NE(error_of([&] { height_of(transforms, now); }, ErrorKind::bad_file), "no error");
+}
+
+/// What it sees along its rays is only known if all came from one place.
+TEST(DigCycleSession, AScanOfASensorThatMovedHasNoPlaceOfIt) {
+  LiveFrame frame;
+  frame.points.size = {2, 2};
+  frame.points.points = Points(4, Eigen::Vector3d(3.0, 0.0, -2.0));
+  frame.pose = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 2.0));
+  frame.from_sensor = true;
+  LiveFrame later = frame;
+  const auto stood = merged({frame, later}).cloud.sensor_origin;
+  ASSERT_TRUE(stood);
+  EXPECT_EQ(*stood, Eigen::Vector3d(0.0, 0.0, 2.0));
+  later.pose->translation().x() = 0.5;
+  const LiveScan moved = merged({frame, later});
+  EXPECT_FALSE(moved.cloud.sensor_origin);
+  EXPECT_EQ(moved.cloud.points.size(), 8U);
 }
 
 TEST(DigCycleSession, AveragesOrganisedMessagesOfASensorThatStood) {
@@ -670,6 +720,17 @@ TEST(DigCycleSession, TheNewestJointStatesAreWhereTheMachineStands) {
   tell(now, {-0.6, 1.6, 0.5, 0.0}, now);  // then by a clock that is half a second ahead
   tell(now + second / 2, {-0.5, 1.5, 0.5, 0.0}, now);
   EXPECT_NEAR(session.plan().motion.points.front().positions[0], -0.5, 1e-12);
+}
+
+TEST(DigCycleSession, JointStatesThatComeLateAreThoseOfTheirTime) {
+  RecentJoints joints;
+  for (const auto& [at, position] : {std::pair(0, 0.1), {2, 0.3}, {1, 0.2}}) {
+    joints.add("boom", {now + at * second, position});
+  }
+  EXPECT_EQ(joints.nearest("boom", now + second)->position, 0.2);
+  EXPECT_EQ(joints.nearest("boom", now + 3 * second)->position, 0.3);
+  EXPECT_TRUE(joints.reaches("boom", now + 2 * second));
+  EXPECT_NEAR(*joints.turned("boom", second), 0.1, 1e-12);
 }
 
 TEST(DigCycleSession, JointStatesMayHaveNoStampAndAnyClock) {

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "ground/obstacles.hpp"
+#include "scans/scan_obstacles.hpp"
+#include "scans/scan_wires.hpp"
 
 #include "support/machine_file.hpp"
 #include "support/obstacle_judge.hpp"
@@ -104,6 +106,49 @@ TEST(ObstacleScan, PeopleAndTrucksOfAnEarlierScanThatLeftAreGone) {
   const Terrain truck = with_earlier({Kind::box, "truck", {0.0, 6.0, 0.0}, {5.0, 2.4, 2.6}});
   EXPECT_LT(top_at(truck.highest(), 0.0, 6.0), 0.1);
   EXPECT_LT(top_at(truck.highest(), 1.0, 5.0), 0.1);
+}
+
+/// How many cells are thin of a square, seen from above, that hangs over level ground.
+Eigen::Index thin_cells_of(double width) {
+  auto cloud = std::make_shared<Cloud>();
+  for (int i = -40; i < 40; ++i) {
+    for (int j = -40; j < 40; ++j) {
+      const double x = 0.05 * i + 0.025, y = 0.05 * j + 0.025;
+      const bool hangs = std::max(std::abs(x), std::abs(y)) < 0.5 * width;
+      cloud->points.emplace_back(x, y, hangs ? 2.0 : 0.0);
+    }
+  }
+  cloud->width = cloud->points.size();
+  Scan scan;
+  scan.clouds = {cloud};
+  return seen_tops(scan, flat_ground({-1.5, -1.5, 1.5, 1.5}, 0.05), {}).thin.count();
+}
+
+/// What is thin stays where a later scan sees the ground behind it.
+TEST(ObstacleScan, ALoadOnARopeIsThinAndARoofIsNot) {
+  EXPECT_GT(thin_cells_of(0.2), 0);
+  EXPECT_EQ(thin_cells_of(2.0), 0);
+}
+
+TEST(ObstacleScan, ThreeReturnsOnALineAreAWire) {
+  std::vector<Vector3d> hits = {{-4.0, 3.0, 3.0}, {0.0, 4.0, 3.1}};
+  EXPECT_TRUE(find_wires(hits).empty());
+  hits.emplace_back(4.0, 5.0, 3.2);
+  const std::vector<Wire> wires = find_wires(hits);
+  ASSERT_EQ(wires.size(), 1U);
+  EXPECT_NEAR(std::abs(wires[0].direction.y() / wires[0].direction.x()), 0.25, 1e-9);
+  EXPECT_NEAR(wires[0].half, std::hypot(4.0, 1.0), 1e-9);
+  EXPECT_EQ(wires[0].top, 3.2);
+}
+
+TEST(ObstacleScan, TheTopOfATruckHoldsNoWire) {
+  std::vector<Vector3d> hits;
+  for (int i = 0; i < 100; ++i) hits.emplace_back(0.15 * (i % 10), 4.0 + 0.15 * (i / 10), 2.6);
+  EXPECT_TRUE(find_wires(hits).empty());
+  for (const double x : {-6.0, -4.0, -2.0, 4.0}) hits.emplace_back(x, 7.0, 3.0);
+  const std::vector<Wire> wires = find_wires(hits);
+  ASSERT_EQ(wires.size(), 1U);
+  EXPECT_NEAR(wires[0].middle.y(), 7.0, 1e-9);
 }
 
 TEST(ObstacleScan, TheHighestReturnIsKeptBesideTheTopThatIsCounted) {
