@@ -50,8 +50,8 @@ Rectangle standing_extent(const Machine& machine);
 /// swing_extent() as level ground, in cells of usual_cell().
 Terrain level_swing_ground(const Machine& machine);
 
-/// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the rows
-/// of cells that it needs.
+/// Height of a surface in the boom plane. The profile keeps a copy of the rows of cells that it
+/// needs.
 GroundProfile boom_plane_profile(const HeightMap& surface);
 GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 /// Where the edge of a bucket in the boom plane enters the ground, for make_dig_path(): the median
