@@ -340,7 +340,7 @@ class Dig {
         if (std::isnan(lowered)) continue;
         const double in_pit = std::clamp(gained, 0.0, std::max(0.0, lowered));
         ledger.fallen_back += in_pit * area;
-        ledger.spilled += (gained - in_pit) * area;
+        ledger.spilled += std::max(0.0, gained - in_pit) * area;
       }
     }
   }
