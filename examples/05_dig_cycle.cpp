@@ -30,13 +30,17 @@ const Eigen::Vector2d dump_at(3.5, 3.5);  ///< in sight of the camera [m]
 
 /// What is told after a scan; the frame of the site is that of the machine where it stands.
 SiteEvent scan(const Terrain& ground, int number) {
-  auto cloud = std::make_shared<Cloud>();
-  const double dump = std::atan2(dump_at.y(), dump_at.x());
-  cloud->points = scan_surface(ground.surface(), sensor_setup_of_word("boom-camera"),
-                               {0.0, dump - 0.25, dump + 0.25}, static_cast<std::uint64_t>(number));
-  cloud->width = cloud->points.size();
   SiteEvent event;
-  event.scan.clouds = {cloud};
+  const double dump = std::atan2(dump_at.y(), dump_at.x());
+  for (PlacedScan& look :
+       look_at(ground.surface(), sensor_setup_of_word("boom-camera"),
+               {0.0, dump - 0.25, dump + 0.25}, static_cast<std::uint64_t>(number))) {
+    auto cloud = std::make_shared<Cloud>();
+    cloud->sensor_origin = look.place;
+    cloud->width = look.points.size();
+    cloud->points = std::move(look.points);
+    event.scan.clouds.push_back(std::move(cloud));
+  }
   event.scan.z_is_up = true;
   event.time = 60.0 * number;  // [s]; of the clock on site
   event.dug = false;

@@ -166,22 +166,38 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   return scene;
 }
 
-SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
-                      const std::vector<CameraPlace>& places) {
-  const auto scan = [&](const HeightMap& surface, std::uint64_t epoch) {
-    std::vector<Eigen::Vector3d> points;
-    std::uint64_t index = 0;
+SceneLooks look_at_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
+                         const std::vector<CameraPlace>& places) {
+  const auto look = [&](const HeightMap& surface, std::uint64_t epoch) {
+    std::vector<PlacedScan> looks;
     for (const CameraPlace& place : places.empty() ? places_above(scene, surface) : places) {
       DepthCamera placed = camera;
       placed.position = place.position;
       placed.target = place.target;
-      const auto seen = scan_surface(surface, placed, Random(seed, epoch, index++).bits());
+      auto seen = scan_surface(surface, placed, Random(seed, epoch, looks.size()).bits());
       require_sight(seen, surface, placed);
-      points.insert(points.end(), seen.begin(), seen.end());
+      looks.push_back({place.position, std::move(seen)});
     }
-    return points;
+    return looks;
   };
-  return {scan(scene.ground_before(), 0), scan(scene.ground_after(), 1)};
+  return {look(scene.ground_before(), 0), look(scene.ground_after(), 1)};
+}
+
+SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
+                      const std::vector<CameraPlace>& places) {
+  return points_of(look_at_scene(scene, camera, seed, places));
+}
+
+std::vector<Eigen::Vector3d> points_of(const std::vector<PlacedScan>& looks) {
+  std::vector<Eigen::Vector3d> all;
+  for (const PlacedScan& look : looks) {
+    all.insert(all.end(), look.points.begin(), look.points.end());
+  }
+  return all;
+}
+
+SceneScans points_of(const SceneLooks& looks) {
+  return {points_of(looks.before), points_of(looks.after)};
 }
 
 }  // namespace excavplan

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/sensing/sensor_setup.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -35,19 +37,18 @@ SensorSetup cab_lidar() {
   return {"cab-lidar", lidar};
 }
 
-std::vector<Eigen::Vector3d> scan_swung(const HeightMap& surface, DepthCamera camera, double swing,
-                                        std::uint64_t seed) {
+PlacedScan look_swung(const HeightMap& surface, DepthCamera camera, double swing,
+                      std::uint64_t seed) {
   const Eigen::AngleAxisd turn(swing, Eigen::Vector3d::UnitZ());
   camera.position = turn * camera.position;
   camera.target = turn * camera.target;
-  return scan_surface(surface, camera, seed);
+  return {camera.position, scan_surface(surface, camera, seed)};
 }
 
-std::vector<Eigen::Vector3d> scan_swung(const HeightMap& surface, Lidar lidar, double swing,
-                                        std::uint64_t seed) {
+PlacedScan look_swung(const HeightMap& surface, Lidar lidar, double swing, std::uint64_t seed) {
   lidar.position = Eigen::AngleAxisd(swing, Eigen::Vector3d::UnitZ()) * lidar.position;
   lidar.azimuth.array() += swing;
-  return scan_surface(surface, lidar, seed);
+  return {lidar.position, scan_surface(surface, lidar, seed)};
 }
 
 }  // namespace
@@ -66,30 +67,40 @@ const SensorSetup& sensor_setup_of_word(const std::string& word) {
   throw Error(ErrorKind::bad_input, "set-up is '" + word + "', must be " + words);
 }
 
+std::vector<PlacedScan> look_at(const HeightMap& surface, const SensorSetup& setup,
+                                const std::vector<double>& swings, std::uint64_t seed) {
+  std::vector<PlacedScan> looks;
+  for (const double swing : swings) {
+    const std::uint64_t of_look = Random(seed, looks.size()).bits();
+    looks.push_back(
+        std::visit([&](const auto& sensor) { return look_swung(surface, sensor, swing, of_look); },
+                   setup.sensor));
+  }
+  return looks;
+}
+
 std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const SensorSetup& setup,
                                           const std::vector<double>& swings, std::uint64_t seed) {
-  std::vector<Eigen::Vector3d> points;
-  std::uint64_t index = 0;
-  for (const double swing : swings) {
-    const std::uint64_t of_look = Random(seed, index++).bits();
-    const std::vector<Eigen::Vector3d> seen =
-        std::visit([&](const auto& sensor) { return scan_swung(surface, sensor, swing, of_look); },
-                   setup.sensor);
-    points.insert(points.end(), seen.begin(), seen.end());
-  }
-  return points;
+  return points_of(look_at(surface, setup, swings, seed));
+}
+
+SceneLooks look_at_scene(const DigScene& scene, const SensorSetup& setup, std::uint64_t seed) {
+  constexpr double beside = 0.25;  // ours: over both halves of a heap of several buckets [rad]
+  const double dump = std::atan2(scene.dump_at.y(), scene.dump_at.x());
+  const std::array<double, looks_at_scene> at = {0.0, dump - beside, dump + beside};
+  const std::vector<double> swings(at.begin(), at.end());
+  const auto look = [&](const HeightMap& surface, std::uint64_t epoch) {
+    auto looks = look_at(surface, setup, swings, Random(seed, epoch).bits());
+    const bool sees = std::any_of(looks.begin(), looks.end(),
+                                  [](const PlacedScan& each) { return !each.points.empty(); });
+    if (sees) return looks;
+    throw Error(ErrorKind::bad_input, "the set-up " + setup.name + " sees no ground of the scene");
+  };
+  return {look(scene.ground_before(), 0), look(scene.ground_after(), 1)};
 }
 
 SceneScans scan_scene(const DigScene& scene, const SensorSetup& setup, std::uint64_t seed) {
-  constexpr double beside = 0.25;  // ours: over both halves of a heap of several buckets [rad]
-  const double dump = std::atan2(scene.dump_at.y(), scene.dump_at.x());
-  const std::vector<double> swings = {0.0, dump - beside, dump + beside};
-  const auto scan = [&](const HeightMap& surface, std::uint64_t epoch) {
-    auto points = scan_surface(surface, setup, swings, Random(seed, epoch).bits());
-    if (!points.empty()) return points;
-    throw Error(ErrorKind::bad_input, "the set-up " + setup.name + " sees no ground of the scene");
-  };
-  return {scan(scene.ground_before(), 0), scan(scene.ground_after(), 1)};
+  return points_of(look_at_scene(scene, setup, seed));
 }
 
 }  // namespace excavplan

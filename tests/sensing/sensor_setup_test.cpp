@@ -55,6 +55,18 @@ TEST(SensorSetups, LooksDoNotShareNoise) {
   EXPECT_EQ(twice, scan_surface(level_map(), setup, {0.0, 0.0}, 1));
 }
 
+TEST(SensorSetups, TellWhereTheyLookedFrom) {
+  for (const SensorSetup& setup : sensor_setups()) {
+    const std::vector<double> swings = {0.0, 0.5 * 3.14159265358979};
+    const std::vector<PlacedScan> looks = look_at(level_map(), setup, swings, 1);
+    ASSERT_EQ(looks.size(), 2U);
+    const Eigen::Vector3d turned(-looks[0].place.y(), looks[0].place.x(), looks[0].place.z());
+    EXPECT_LT((looks[1].place - turned).norm(), 1e-9) << setup.name;
+    EXPECT_GT(looks[0].place.z(), 2.0);
+    EXPECT_EQ(points_of(looks), scan_surface(level_map(), setup, swings, 1));
+  }
+}
+
 TEST(SensorSetups, SeePitAndHeap) {
   const Machine machine = load_machine(find_data_file("machines/zx120.json"));
   const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
@@ -64,6 +76,7 @@ TEST(SensorSetups, SeePitAndHeap) {
   const DigScene scene = run_scene(machine, loam, 60.0, ground, options);
   for (const SensorSetup& setup : sensor_setups()) {
     const SceneScans scans = scan_scene(scene, setup, 1);
+    EXPECT_EQ(look_at_scene(scene, setup, 1).after.size(), looks_at_scene);
     const auto near = [&](const Eigen::Vector2d& place) {
       return std::count_if(scans.after.begin(), scans.after.end(), [&](const auto& point) {
         return (point.template head<2>() - place).norm() < 0.5;

@@ -41,7 +41,10 @@ DigScans scans_of(const EstimateInputs& inputs, ScanReport& report) {
   const ScanPair whole = placed_pair(*inputs.before, *inputs.after, inputs.frames, report);
   DigScans scans{whole.before, whole.after};
   if (inputs.dump_before) {
-    scans.dump = placed_pair(*inputs.dump_before, *inputs.dump_after, inputs.frames, report);
+    ScanFrames frames = inputs.frames;
+    frames.before_also.clear();
+    frames.after_also.clear();
+    scans.dump = placed_pair(*inputs.dump_before, *inputs.dump_after, frames, report);
   }
   return scans;
 }

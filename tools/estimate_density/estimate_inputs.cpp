@@ -15,6 +15,7 @@ void declare_estimate(Arguments& arguments, EstimateInputs& inputs) {
                            std::string(recording_form) +
                            "; one cloud alone is that after it, on a --site");
   arguments.positional("AFTER", inputs.after, "cloud after the dig");
+  declare_further_clouds(arguments, inputs.frames);
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
   arguments.file("dump-after", inputs.dump_after, "cloud of the dump area after");

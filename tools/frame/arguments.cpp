@@ -146,6 +146,12 @@ void Arguments::option(const std::string& name, Eigen::Vector2d& value, const st
        false, [&value, name](const std::string& text) { value = parse_point("--" + name, text); }});
 }
 
+void Arguments::option(const std::string& name, std::optional<Eigen::Vector2d>& value,
+                       const std::string& help) {
+  add({name, "X,Y", help + " [m]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_point("--" + name, text); }});
+}
+
 void Arguments::option(const std::string& name, std::vector<CameraPlace>& value,
                        const std::string& help) {
   add({name, "X,Y,Z,TX,TY,TZ", help + " [m]", "", false, false,
@@ -238,6 +244,14 @@ void Arguments::text(const std::string& name, const std::string& placeholder,
                      std::optional<std::string>& value, const std::string& help) {
   add({name, placeholder, help, value.value_or(""), false, false,
        [&value](const std::string& text) { value = text; }});
+  entries_.back().input = names_file(placeholder);
+}
+
+void Arguments::texts(const std::string& name, const std::string& placeholder,
+                      std::vector<std::string>& values, const std::string& help) {
+  add({name, placeholder, help, "", false, false,
+       [&values](const std::string& text) { values.push_back(text); }});
+  entries_.back().repeated = true;
   entries_.back().input = names_file(placeholder);
 }
 

@@ -77,6 +77,8 @@ class Arguments {
   void option(const std::string& name, DigParameters& value, const std::string& help);
   /// "x,y"
   void option(const std::string& name, Eigen::Vector2d& value, const std::string& help);
+  void option(const std::string& name, std::optional<Eigen::Vector2d>& value,
+              const std::string& help);
   /// Places of cameras, "x,y,z,tx,ty,tz"; may be given several times.
   void option(const std::string& name, std::vector<CameraPlace>& value, const std::string& help);
   /// "x,y,z"
@@ -107,6 +109,9 @@ class Arguments {
             const std::string& help);
   void text(const std::string& name, const std::string& placeholder,
             std::optional<std::string>& value, const std::string& help);
+  /// The same, given several times.
+  void texts(const std::string& name, const std::string& placeholder,
+             std::vector<std::string>& values, const std::string& help);
 
   /// These are the same in every tool; see soil_named(), machine_named().
   void soil(std::string& name);

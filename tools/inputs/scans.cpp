@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inputs/scans.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <memory>
@@ -21,6 +22,7 @@ namespace {
 struct Side {
   const char* name;  ///< "before" or "after"
   const std::string& text;
+  const std::vector<std::string>& also;
   const std::string& unit;
   const std::optional<std::string>& frame;
   const std::optional<Eigen::Matrix4d>& pose;
@@ -42,6 +44,21 @@ void require_within(const Machine& machine, const MachinePosture& posture) {
   }
 }
 
+/// Clouds from other places, each of which tells its own.
+void add_further(const Side& side, const ScanFrames& frames, Scan& scan) {
+  const std::string option = "--" + std::string(side.name) + "-also";
+  if (!side.also.empty() && (side.origin || frames.sensor_origin)) {
+    usage_error(option + " excludes --sensor-origin and --" + side.name +
+                "-origin: each cloud was seen from a place of its own, which its VIEWPOINT tells");
+  }
+  for (const std::string& file : side.also) {
+    if (file == side.text || std::count(side.also.begin(), side.also.end(), file) > 1) {
+      usage_error(option + ": " + file + " is given twice: its points would count twice");
+    }
+    scan.files.push_back(file);
+  }
+}
+
 /// Reads the scan if it is of a recording; a file is left where it is.
 Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
@@ -55,6 +72,7 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
     report.recordings.push_back(std::move(input->json));
     report.lines.push_back("recorded   " + input->line);
   }
+  add_further(side, frames, scan);
   scan.area = frames.area;
   scan.unit = unit_length(side.unit.empty() ? frames.unit : side.unit);
   scan.sensor_origin = side.origin ? side.origin : frames.sensor_origin;
@@ -85,9 +103,13 @@ void check(const ScanFrames& frames) {
 }
 
 Side side_after(const std::string& text, const ScanFrames& frames) {
-  return {"after",           text,
-          frames.after_unit, frames.after,
-          frames.after_pose, frames.after_origin,
+  return {"after",
+          text,
+          frames.after_also,
+          frames.after_unit,
+          frames.after,
+          frames.after_pose,
+          frames.after_origin,
           frames.view.after};
 }
 
@@ -131,6 +153,13 @@ void declare_units(Arguments& arguments, ScanFrames& frames) {
   declare_unit(arguments, "after-unit", frames.after_unit, "of those after (default: as --unit)");
 }
 
+void declare_further_clouds(Arguments& arguments, ScanFrames& frames) {
+  arguments.texts("before-also", "FILE", frames.before_also,
+                  "cloud of the same ground from another place, in the frame of BEFORE; may be "
+                  "given several times");
+  arguments.texts("after-also", "FILE", frames.after_also, "the same of AFTER");
+}
+
 void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
   arguments.machine(view.machine);
   arguments.option("machine-pose", view.both,
@@ -148,8 +177,8 @@ void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
                      ScanReport& report) {
   check(frames);
-  Scan first = placed({"before", before, frames.before_unit, frames.before, frames.before_pose,
-                       frames.before_origin, frames.view.before},
+  Scan first = placed({"before", before, frames.before_also, frames.before_unit, frames.before,
+                       frames.before_pose, frames.before_origin, frames.view.before},
                       frames, report);
   ScanPair pair = {std::move(first), placed(side_after(after, frames), frames, report)};
   require_recording(frames.recorded, !report.recordings.empty());
@@ -166,6 +195,7 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
 Scan placed_scan(const std::string& after, const ScanFrames& frames, ScanReport& report) {
   check(frames);
   if (frames.level) usage_error("--level needs BEFORE: it levels by the ground in that scan");
+  if (!frames.before_also.empty()) usage_error("--before-also needs BEFORE");
   Scan scan = placed(side_after(after, frames), frames, report);
   require_recording(frames.recorded, !report.recordings.empty());
   return scan;

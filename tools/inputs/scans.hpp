@@ -42,12 +42,16 @@ struct ScanFrames {
   std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
   std::optional<Eigen::Vector3d> before_origin = {};  ///< of those before
   std::optional<Eigen::Vector3d> after_origin = {};
+  std::vector<std::string> before_also = {};  ///< clouds of the same ground from other places
+  std::vector<std::string> after_also = {};
   MachineInView view = {};  ///< boom, arm and bucket are left out of the scans
 };
 
 /// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --tf-frame, --depth-unit,
 /// --level, --sensor-origin, --before-origin, --after-origin.
 void declare_frames(Arguments& arguments, ScanFrames& frames);
+/// --before-also and --after-also.
+void declare_further_clouds(Arguments& arguments, ScanFrames& frames);
 /// --machine, --machine-pose, --before-machine-pose and --after-machine-pose.
 void declare_machine_in_view(Arguments& arguments, MachineInView& view);
 /// --unit, --before-unit and --after-unit.

@@ -35,17 +35,6 @@ auto of_option(const std::string& option, const Work& work) {
   }
 }
 
-void add_texts(Arguments& arguments, const char* name, const char* placeholder,
-               std::vector<std::string>& texts, const std::string& help) {
-  Arguments::Entry entry;
-  entry.name = name;
-  entry.placeholder = placeholder;
-  entry.help = help;
-  entry.repeated = true;
-  entry.assign = [&texts](const std::string& text) { texts.push_back(text); };
-  arguments.add(entry);
-}
-
 void name_kinds(const OrderInputs& inputs, SiteSettings& site) {
   site.machine = of_option("--machine", [&] { return machine_named(inputs.machine); });
   site.soil = of_option("--soil", [&] { return soil_named(inputs.soil); });
@@ -197,14 +186,14 @@ void declare_order(Arguments& arguments, OrderInputs& inputs) {
                    "of its walls, horizontal per vertical; 0: upright");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
-  add_texts(arguments, "windrow", "X1,Y1,X2,Y2,...", inputs.windrows,
-            "polygon in which soil is laid; may be given several times [m]");
-  add_texts(arguments, "heap", "X1,Y1,X2,Y2,...", inputs.heaps, "the same of a heap [m]");
+  arguments.texts("windrow", "X1,Y1,X2,Y2,...", inputs.windrows,
+                  "polygon in which soil is laid; may be given several times [m]");
+  arguments.texts("heap", "X1,Y1,X2,Y2,...", inputs.heaps, "the same of a heap [m]");
   arguments.text("truck", "X1,Y1,...:HEIGHT:KG", inputs.truck,
                  "bed of a truck, its upper edge over the ground, and the mass of a load [m,m,kg]");
-  add_texts(arguments, "keep-out", "X1,Y1,...[:DEPTH]", inputs.keep_out,
-            "polygon that is not touched, with a depth from there on down; may be given several "
-            "times [m]");
+  arguments.texts("keep-out", "X1,Y1,...[:DEPTH]", inputs.keep_out,
+                  "polygon that is not touched, with a depth from there on down; may be given "
+                  "several times [m]");
   arguments.option("tolerance", inputs.tolerance, Quantity::length,
                    "of the finished ground, to either side");
   for (const char* alone : {"design", "trench"}) arguments.exclude("site", {alone});

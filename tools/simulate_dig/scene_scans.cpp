@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate_dig/scene_scans.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include <excavplan/clouds/cloud.hpp>
@@ -17,25 +18,53 @@ std::vector<std::string> setup_words() {
   return words;
 }
 
-/// One camera's place is that of the scan.
-void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points,
+/// "scan.pcd", "scan-2.pcd", "scan-3.pcd"
+std::string file_of_look(const std::string& file, std::size_t index) {
+  if (index == 0) return file;
+  const std::filesystem::path path = file;
+  return (path.parent_path() / path.stem()).string() + "-" + std::to_string(index + 1) +
+         path.extension().string();
+}
+
+/// The files of the second look and those after it.
+std::vector<std::string> files_beside(const std::string& file, const SceneScanInputs& inputs) {
+  if (!inputs.each_look) return {};
+  const std::size_t above = inputs.places.empty() ? 2 : inputs.places.size();
+  const std::size_t looks = inputs.setup == from_above ? above : looks_at_scene;
+  std::vector<std::string> files;
+  for (std::size_t i = 1; i < looks; ++i) files.push_back(file_of_look(file, i));
+  return files;
+}
+
+void write_look(const std::string& file, PlacedScan look, bool tells_place,
+                const Eigen::Vector2d& base) {
+  const Eigen::Vector3d shift(base.x(), base.y(), 0.0);
+  Cloud cloud;
+  if (tells_place) cloud.sensor_origin = look.place + shift;
+  for (Eigen::Vector3d& point : look.points) point += shift;
+  cloud.points = std::move(look.points);
+  cloud.width = cloud.points.size();
+  write_cloud(file, cloud, cloud_format_of_name(file));
+}
+
+void write_scan(const std::optional<std::string>& file, std::vector<PlacedScan> looks,
                 const SceneScanInputs& inputs) {
   if (!file) return;
-  const Eigen::Vector3d base(inputs.base.x(), inputs.base.y(), 0.0);
-  Cloud cloud;
-  if (inputs.places.size() == 1) cloud.sensor_origin = inputs.places.front().position + base;
-  for (Eigen::Vector3d& point : points) point += base;
-  cloud.points = std::move(points);
-  cloud.width = cloud.points.size();
-  write_cloud(*file, cloud, cloud_format_of_name(*file));
+  if (!inputs.each_look && looks.size() > 1) {
+    return write_look(*file, {{}, points_of(looks)}, false, inputs.base);
+  }
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    write_look(file_of_look(*file, i), std::move(looks[i]), true, inputs.base);
+  }
 }
 
 }  // namespace
 
 void declare_scans(Arguments& arguments, SceneScanInputs& inputs) {
+  const auto beside = [&inputs](const std::string& file) { return files_beside(file, inputs); };
   arguments.output("before", inputs.before,
-                   "write a depth-camera scan of the ground before the dig");
-  arguments.output("after", inputs.after, "write a depth-camera scan after the dig");
+                   "write a depth-camera scan of the ground before the dig", beside);
+  arguments.output("after", inputs.after, "write a depth-camera scan after the dig", beside);
   arguments.option("camera", inputs.places,
                    "place of a camera of the scans and point it faces; repeated for several "
                    "(default: one over the dig and one over the heap)");
@@ -43,6 +72,9 @@ void declare_scans(Arguments& arguments, SceneScanInputs& inputs) {
     arguments.choice("setup", inputs.setup, setup_words(),
                      "what scans: cameras at the places of --camera, or a sensor that the machine "
                      "carries and swings to dig and heap");
+    arguments.flag("each-look", inputs.each_look,
+                   "write what the sensor sees from each place into a file of its own that tells "
+                   "the place: FILE, then the same with -2, -3 before the ending");
     arguments.option("noise", inputs.camera.noise, Quantity::length,
                      "depth noise of the scans at 1 m; grows with range squared");
   });
@@ -53,7 +85,11 @@ void check_scans(const SceneScanInputs& inputs) {
     usage_error("--camera needs --before or --after");
   }
   for (const auto& file : {inputs.before, inputs.after}) {
-    if (file) cloud_format_of_name(*file);
+    if (!file) continue;
+    const CloudFormat format = cloud_format_of_name(*file);
+    if (inputs.each_look && format.name != "pcd") {
+      usage_error("--each-look: " + *file + " cannot tell a place: the name must end in .pcd");
+    }
   }
   if (!inputs.places.empty() && inputs.setup != from_above) {
     usage_error("--camera places cameras; the sensor of --setup " + inputs.setup +
@@ -64,12 +100,13 @@ void check_scans(const SceneScanInputs& inputs) {
 void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {
   if (!inputs.any()) return;
   const OptionNames names = {{"the camera at", "--camera: the one at"}, {"the set-up", "--setup:"}};
-  SceneScans scans = naming_options(names, [&] {
-    return inputs.setup == from_above ? scan_scene(scene, inputs.camera, seed, inputs.places)
-                                      : scan_scene(scene, sensor_setup_of_word(inputs.setup), seed);
+  SceneLooks looks = naming_options(names, [&] {
+    return inputs.setup == from_above
+               ? look_at_scene(scene, inputs.camera, seed, inputs.places)
+               : look_at_scene(scene, sensor_setup_of_word(inputs.setup), seed);
   });
-  write_scan(inputs.before, std::move(scans.before), inputs);
-  write_scan(inputs.after, std::move(scans.after), inputs);
+  write_scan(inputs.before, std::move(looks.before), inputs);
+  write_scan(inputs.after, std::move(looks.after), inputs);
 }
 
 }  // namespace excavplan::tools

@@ -23,6 +23,7 @@ struct SceneScanInputs {
   std::vector<CameraPlace> places;                 ///< empty: over dig and heap
   Eigen::Vector2d base = Eigen::Vector2d::Zero();  ///< of the machine in their frame [m]
   std::string setup = from_above;                  ///< or one of sensor_setups()
+  bool each_look = false;                          ///< in a file of its own, with its place
 
   bool any() const { return before || after; }
 };

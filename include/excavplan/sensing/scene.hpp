@@ -76,17 +76,36 @@ struct SceneScans {
   std::vector<Eigen::Vector3d> after;   ///< likewise
 };
 
+/// What a sensor saw from one place.
+struct PlacedScan {
+  Eigen::Vector3d place;                ///< where it stood, in the site frame [m]
+  std::vector<Eigen::Vector3d> points;  ///< likewise
+};
+
+/// Looks at a scene.
+struct SceneLooks {
+  std::vector<PlacedScan> before;
+  std::vector<PlacedScan> after;
+};
+
+/// The points of all looks, one after another.
+std::vector<Eigen::Vector3d> points_of(const std::vector<PlacedScan>& looks);
+SceneScans points_of(const SceneLooks& looks);
+
 /// Where a camera stands in the site frame.
 struct CameraPlace {
   Eigen::Vector3d position;  ///< [m]
   Eigen::Vector3d target;    ///< point on the optical axis [m]
 };
 
-/// Scans of depth cameras at these places. Without any there are two, one over the dig and one over
+/// Looks of depth cameras at these places. Without any there are two, one over the dig and one over
 /// the heap, placed by camera_above(). They have the errors, image and field of view of `camera`;
 /// its place is not used.
 ///
 /// @throws Error (bad_input) as scan_surface(), or if a camera sees no ground
+SceneLooks look_at_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
+                         const std::vector<CameraPlace>& places = {});
+/// The points of these looks.
 SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
                       const std::vector<CameraPlace>& places = {});
 
