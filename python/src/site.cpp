@@ -30,14 +30,18 @@ struct SitePlanInPython : SitePlan {
 };
 
 void tell_dig(const std::optional<SitePlanInPython>& plan, const std::optional<DigParameters>& path,
-              const std::optional<double>& start, SiteEvent& event) {
+              const std::optional<double>& start, const std::optional<Eigen::Vector2d>& dump_at,
+              SiteEvent& event) {
   if (plan && path) throw Error(ErrorKind::bad_input, "plan and dug_path both tell the path");
   if (start && !path) throw Error(ErrorKind::bad_input, "dug_start needs dug_path");
-  if (path) event.options.dug_path = DugPath{{}, *path, start};
+  if (dump_at && !plan && !path) {
+    throw Error(ErrorKind::bad_input, "dump_at needs plan or dug_path");
+  }
+  if (path) event.options.dug_path = DugPath{{}, *path, start, {}, dump_at};
   if (!plan) return;
   if (!plan->plan.dig) throw Error(ErrorKind::bad_input, "plan: it has no dig");
   const PlannedDig& dig = *plan->plan.dig;
-  event.options.dug_path = DugPath{{}, dig.parameters, dig.start_x};
+  event.options.dug_path = DugPath{{}, dig.parameters, dig.start_x, {}, dump_at};
   event.foretold = ForetoldDig{plan->density.percent, dig.energy};
 }
 
@@ -46,6 +50,7 @@ SiteEvent made_event(const py::object& scan, const py::object& before, bool dug,
                      const std::optional<SitePlanInPython>& plan,
                      const std::optional<DigParameters>& dug_path,
                      const std::optional<double>& dug_start,
+                     const std::optional<Eigen::Vector2d>& dump_at,
                      const std::optional<Measured>& payload_mass,
                      const std::optional<Measured>& joint_work, bool stalled, unsigned threads) {
   SiteEvent event;
@@ -54,7 +59,7 @@ SiteEvent made_event(const py::object& scan, const py::object& before, bool dug,
   event.dug = dug;
   event.time = time ? *time : now();
   event.base = base;
-  tell_dig(plan, dug_path, dug_start, event);
+  tell_dig(plan, dug_path, dug_start, dump_at, event);
   event.options.payload_mass = payload_mass;
   event.options.joint_work = joint_work;
   event.options.threads = threads;
@@ -92,12 +97,13 @@ void bind_event(py::module_& module) {
           py::init(&made_event), arg("scan"), py::kw_only(), arg("before") = py::none(),
           arg("dug") = true, arg("time") = py::none(), arg("base") = BasePose{},
           arg("plan") = py::none(), arg("dug_path") = py::none(), arg("dug_start") = py::none(),
-          arg("payload_mass") = py::none(), arg("joint_work") = py::none(), arg("stalled") = false,
-          arg("threads") = 0,
+          arg("dump_at") = py::none(), arg("payload_mass") = py::none(),
+          arg("joint_work") = py::none(), arg("stalled") = false, arg("threads") = 0,
           "scan: of the ground now, in the site's frame; before: of it before the dig, not needed\n"
           "once the site knows its ground; dug: false if nothing was dug; time: when it was\n"
           "scanned, since 1970-01-01 UTC, else now [s]; base: of the machine during the dig;\n"
           "plan: the SitePlan that was driven, or dug_path, dug_start as of estimate_density();\n"
+          "dump_at: (x, y) where the bucket was emptied, in the machine's frame [m];\n"
           "payload_mass: Measured, moist [kg]; joint_work: Measured, of the joints in the dig\n"
           "[J]; stalled: the dig was given up; threads: 0 is one per core.")
       .def_readonly("dug", &SiteEvent::dug, "False: no density is sought.")

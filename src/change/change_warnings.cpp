@@ -113,14 +113,16 @@ struct DoubtfulZones {
 
   /// @param total  of all zones of its kind [m^3]
   void add(const ZoneSum& zone, double total, const ChangeOptions& options) {
-    const bool matters = std::abs(zone.volume) > least_refused_share * total;
-    const double share = zone.unknown / zone.area;
-    const double guessed = zone.volume > 0.0 || share > most_in_shadow
-                               ? share
-                               : (zone.unknown - zone.shadow) / zone.area;
-    if (share > options.refused_unknown_share && matters) {
+    const double volume = std::abs(zone.volume);
+    const bool matters = volume > least_refused_share * total;
+    const double unseen_share = zone.unknown / zone.area;
+    const double share = unseen_share - zone.swept / zone.area;
+    const double guessed =
+        zone.volume > 0.0 || share > most_in_shadow ? share : share - zone.shadow / zone.area;
+    if (unseen_share > options.refused_unknown_share && matters) {
       unseen.add(zone);
-    } else if (guessed > options.max_unknown_share) {
+    } else if (guessed > options.max_unknown_share &&
+               guessed * volume > least_warned_share * total) {
       partly_unseen.add(zone);
     }
   }

@@ -101,7 +101,10 @@ class ChangeReader {
     return sign < 0.0 ? options_.dig_area : options_.dump_area;
   }
   bool in_given(Place p, double sign) const {
-    return !given(sign) || given(sign)->contains(zone(p).centre.x(), zone(p).centre.y());
+    const auto is_in = [&](const std::optional<Rectangle>& area) {
+      return !area || area->contains(zone(p).centre.x(), zone(p).centre.y());
+    };
+    return is_in(given(sign)) && (sign < 0.0 || is_in(options_.heap_near));
   }
   /// Lies in an area that was given for what it is.
   bool is_told(Place p) const {

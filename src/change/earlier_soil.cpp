@@ -183,8 +183,8 @@ void state_earlier_soil(const std::vector<const HeightMap*>& before, const std::
 }
 
 void require_known_ground(const KnownGround& known, const HeightMap& before) {
-  for (const Eigen::ArrayXXd* layer :
-       {&known.loose, &known.loose_sd, &known.swelling, &known.cut, &known.cover}) {
+  for (const Eigen::ArrayXXd* layer : {&known.loose, &known.loose_sd, &known.guessed_sd,
+                                       &known.swelling, &known.cut, &known.cover}) {
     const bool fits = layer->size() == 0 ||
                       (layer->rows() == before.z.rows() && layer->cols() == before.z.cols());
     if (!fits) {
@@ -194,17 +194,9 @@ void require_known_ground(const KnownGround& known, const HeightMap& before) {
                       std::to_string(before.z.rows()) + " x " + std::to_string(before.z.cols()));
     }
   }
-}
-
-Eigen::ArrayXXi dug_before(const KnownGround& known) {
-  constexpr double least = 0.01;     // ours [m]
-  constexpr Eigen::Index reach = 2;  // ours: floors are not covered everywhere
-  Eigen::ArrayXXi dug = Eigen::ArrayXXi::Zero(known.loose.rows(), known.loose.cols());
-  for_each_cell(known.loose, [&](Cell at) {
-    if (!(known.loose(at.row, at.col) > least)) return;
-    for_each_around(known.loose, at, reach, [&](Cell n) { dug(n.row, n.col) = 1; });
-  });
-  return dug;
+  if (known.cover.size() != known.cut.size()) {
+    throw Error(ErrorKind::bad_input, "known ground: cut and cover must be told together");
+  }
 }
 
 void find_loose_soil(const KnownGround& known, Area& area) {
@@ -231,7 +223,8 @@ void take_loose_soil(const KnownGround& known, const Area& area, VolumeChange& c
   double reached = 0.0;
   for_each_cell(area.ground.zone, [&](Cell at) {
     const CellCut one = reader.at(at);
-    if (one.swept > 0.0 && std::isnan(one.fallen)) cut.unseen_area += cell_area;
+    const bool is_seen = area.swept_unseen.size() == 0 || area.swept_unseen(at.row, at.col) == 0;
+    if (one.swept > 0.0 && (std::isnan(one.fallen) || !is_seen)) cut.unseen_area += cell_area;
     cut.swept_area += cell_area * one.swept;
     if (std::isnan(one.fallen)) return;
     cut.loose.value += cell_area * one.loose;

@@ -33,9 +33,6 @@ void state_earlier_soil(const std::vector<const HeightMap*>& before, const std::
 /// @throws Error (bad_input) unless each layer is empty or as large as the map
 void require_known_ground(const KnownGround& known, const HeightMap& before);
 
-/// 1 where loose soil lies within two cells: a step there is of an earlier dig.
-Eigen::ArrayXXi dug_before(const KnownGround& known);
-
 /// Sets ZoneSum::loose of each zone that fell, and whether the cut is told.
 void find_loose_soil(const KnownGround& known, Area& area);
 

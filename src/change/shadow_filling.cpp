@@ -74,6 +74,7 @@ class ShadowFiller {
         after_(scans.after),
         mixed_(scans.mixed),
         inferred_(scans.inferred),
+        lowest_(scans.lowest),
         ground_(ground),
         sight_(scans.after, scans.places),
         change_{after_.origin, after_.cell_size, after_.z - before_.z - ground.datum},
@@ -338,7 +339,7 @@ class ShadowFiller {
     Filled filled;
     for (std::size_t i = 0; i < shadow.cells.size(); ++i) {
       const Cell cell = shadow.cells[i];
-      const double bottom = fell[i] ? floor : 0.0;
+      const double bottom = fell[i] ? floor_at(cell, floor) : 0.0;
       const double ceiling = sight_.ceiling(cell) - before_.z(cell.row, cell.col) - ground_.datum;
       double sum = 0.0;
       for (int n = 0; n < along * along; ++n) {
@@ -352,6 +353,10 @@ class ShadowFiller {
       filled.height.push_back(std::min(sum / (along * along), ceiling));
     }
     return filled;
+  }
+
+  double floor_at(Cell at, double floor) const {
+    return lowest_.size() == 0 ? floor : std::max(floor, lowest_(at.row, at.col));
   }
 
   /// Of the descents from all cells of the rim.
@@ -423,7 +428,7 @@ class ShadowFiller {
         const Eigen::Vector2d off((n % along + 0.5) / along - 0.5, (line + 0.5) / along - 0.5);
         const double hidden = std::max(0.0, off.dot(rim.outward) - rim.beyond);
         const double way = descent.way(rim.height) - hidden;
-        sum += std::max(floor, descent.height(way)) - rim.height;
+        sum += std::max(floor_at(at, floor), descent.height(way)) - rim.height;
       }
       enter(at, change(at) + sum / (along * along), shadow.hole_zone);
     }
@@ -472,6 +477,7 @@ class ShadowFiller {
   HeightMap& after_;
   const Eigen::ArrayXXi& mixed_;
   const std::optional<SensorPlace>& inferred_;
+  const Eigen::ArrayXXd& lowest_;
   ChangedGround& ground_;
   AllSightLines sight_;
   HeightMap change_;  ///< after - before, less the datum

@@ -23,6 +23,7 @@ struct ShadowedScans {
   const Surface& places;         ///< where its sensors stood, and what each saw
   /// Set if nothing says where it stood but the scan itself.
   const std::optional<SensorPlace>& inferred;
+  const Eigen::ArrayXXd& lowest;  ///< change below which no cell lies [m]; empty: not known
 };
 
 /// Fills ground of the scan after that lies in the shadow of what its sensors saw.

@@ -10,6 +10,7 @@
 
 #include <excavplan/base/error.hpp>
 
+#include "change/dug_ground.hpp"
 #include "change/relief.hpp"
 #include "change/shadow_filling.hpp"
 #include "change/systematic_errors.hpp"
@@ -35,8 +36,11 @@ constexpr double face_place = 0.15;
 /// may hide of the other; ours, from simulated digs that leave soil at the edge of the hole.
 constexpr double hidden_at_border = 0.1;
 
-/// Sums the difference over each zone: area, volume, place. `shadow` is 1 for cells filled as such.
-void sum_zones(Area& area, const Eigen::ArrayXXi& shadow) {
+/// What filled a cell that the scan after does not show.
+enum FilledBy : int { nothing = 0, sight = 1, path = 2 };
+
+/// Sums the difference over each zone: area, volume, place.
+void sum_zones(Area& area, const Eigen::ArrayXXi& filled) {
   const HeightMap& grid = area.grid;
   const ChangedGround& ground = area.ground;
   const double cell_area = grid.cell_size * grid.cell_size;
@@ -55,7 +59,8 @@ void sum_zones(Area& area, const Eigen::ArrayXXi& shadow) {
     zone.area += cell_area;
     zone.centre += cell_area * place;
     if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
-    if (shadow(cell.row, cell.col) != 0) zone.shadow += cell_area;
+    if (filled(cell.row, cell.col) == sight) zone.shadow += cell_area;
+    if (filled(cell.row, cell.col) == path) zone.swept += cell_area;
   });
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
     if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
@@ -418,6 +423,46 @@ Eigen::VectorXd outlier_volumes(const SurfacePair& pair, const Area& area) {
   return volumes * area.grid.cell_size * area.grid.cell_size;
 }
 
+struct UnseenFilling {
+  Eigen::ArrayXXi by;            ///< FilledBy
+  std::vector<double> variance;  ///< of the sum of the filled heights, by zone [m^2]
+};
+
+/// Fills what the scan after does not show, as far as path and sensors tell how it lies.
+UnseenFilling fill_unseen(Scans& scans, const KnownGround* known, Area& area) {
+  UnseenFilling filling;
+  filling.variance.assign(area.ground.zone_is_cut.size(), 0.0);
+  const auto is_filled = [&] {
+    return area.unknown != 0 && !(scans.after.z - scans.before.z).isNaN();
+  };
+  Eigen::ArrayXXd lowest;
+  if (known != nullptr) {
+    filling.variance = fill_swept(*known, scans.before, scans.after, area.ground);
+    lowest = lowest_change(*known);
+  }
+  filling.by = is_filled().select(
+      Eigen::ArrayXXi::Constant(area.unknown.rows(), area.unknown.cols(), path), 0);
+  if (scans.places.sensors.empty()) return filling;
+  const std::vector<double> of_shadows = fill_shadows(
+      {scans.before, scans.after, scans.mixed, scans.places, scans.inferred, lowest}, area.ground);
+  for (std::size_t i = 0; i < of_shadows.size(); ++i) filling.variance[i] += of_shadows[i];
+  filling.by = (is_filled() && filling.by == nothing).select(sight, filling.by).eval();
+  return filling;
+}
+
+/// Error of zones on ground of which no survey shows how it was before.
+void sum_guessed(Area& area, const KnownGround& known) {
+  if (known.guessed_sd.size() == 0) return;
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  std::vector<double> guessed(area.zones.size(), 0.0);
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int index = area.ground.zone(at.row, at.col);
+    const double sd = known.guessed_sd(at.row, at.col);
+    if (index >= 0 && sd > 0.0) guessed[static_cast<std::size_t>(index)] += cell_area * sd;
+  });
+  for (std::size_t i = 0; i < guessed.size(); ++i) area.zones[i].holes += std::pow(guessed[i], 2);
+}
+
 /// The errors that each zone has of its own.
 void sum_own_errors(Area& area, const SurfacePair& pair, const Scans& scans,
                     const Eigen::ArrayXXd& variance, const ChangeOptions& options) {
@@ -447,8 +492,9 @@ void predict_errors(Area& area, const HeightMap& before, const Alignment& left) 
 
 }  // namespace
 
-Area survey(const SurfacePair& pair, const ChangeOptions& options, const Eigen::ArrayXXi& dug) {
+Area survey(const SurfacePair& pair, const ChangeOptions& options, const KnownGround* known) {
   Area area;
+  const Eigen::ArrayXXi dug = known != nullptr ? dug_before(*known) : Eigen::ArrayXXi();
   Scans scans = prepared(pair, options, dug, area.objects);
   area.place_before = doubt_of_place(pair.before);
   area.place_after = doubt_of_place(pair.after);
@@ -462,16 +508,11 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options, const Eigen::
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
-  std::vector<double> shadows(area.zones.size(), 0.0);
-  if (!scans.places.sensors.empty()) {
-    shadows = fill_shadows({scans.before, scans.after, scans.mixed, scans.places, scans.inferred},
-                           area.ground);
-  }
-  const Eigen::ArrayXXi shadow = (scans.after.z - scans.before.z).isNaN().select(0, area.unknown);
+  const UnseenFilling unseen = fill_unseen(scans, known, area);
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].holes = (filling.variance[i] + shadows[i]) * cell_area * cell_area;
+    area.zones[i].holes = (filling.variance[i] + unseen.variance[i]) * cell_area * cell_area;
   }
   area.ground.difference = filling.difference;
 
@@ -479,7 +520,11 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options, const Eigen::
   const double share = take_relief_off(scans.before, area.ground, left);
   const Systematic systematic = take_systematic_off(area.ground, area.grid.cell_size);
   area.systematic_rms = systematic.rms;
-  sum_zones(area, shadow);
+  sum_zones(area, unseen.by);
+  if (known != nullptr) {
+    area.swept_unseen = (unseen.by == path).cast<int>();
+    sum_guessed(area, *known);
+  }
   area.noise = find_noise(area.ground.residual, area.grid.cell_size);
   area.noise.white = std::max(area.noise.white, least_noise * least_noise);
   sum_own_errors(area, pair, scans, scans.variance_of(share), options);

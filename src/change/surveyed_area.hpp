@@ -9,6 +9,7 @@
 
 #include <excavplan/change/change_options.hpp>
 #include <excavplan/change/dig_volumes.hpp>
+#include <excavplan/change/known_ground.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/ground/registration.hpp>
 
@@ -30,6 +31,7 @@ struct ZoneSum {
   double faces = 0.0;    // and by the position of steep faces [m^6]
   double thin = 0.0;     // and by soil that is too thin to tell from noise [m^6]
   double unknown = 0.0;  // area that was filled [m^2]
+  double swept = 0.0;    // of that what the path of the bucket tells [m^2]
   double shadow = 0.0;   // and of that in shadows under known sight lines [m^2]
   double loose = 0.0;    // loose soil that it took from ground that is known [m^3]
   double before = 0.0;   // of its variance by noise, what the surface before made [m^6]
@@ -58,6 +60,7 @@ struct Area {
   Eigen::ArrayXXd variance;     // of each cell's difference, without the datum [m^2]
   double systematic_rms = 0.0;  // of stripes and doming that were taken off [m]
   std::vector<Object> objects;
+  Eigen::ArrayXXi swept_unseen = {};       // 1 where the path alone tells the floor, if it is told
   bool is_cut_told = false;                // what the bucket cut is known (KnownGround::cut)
   std::optional<SensorPlace> inferred;     // of the scan after, where nothing says it
   std::optional<PlaceDoubt> place_before;  // of the place that is said, of each scan
@@ -69,7 +72,8 @@ struct Area {
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid or share fewer than 100 known
 ///         cells
-/// @param dug  1 on and beside soil of earlier digs; empty: not known
-Area survey(const SurfacePair& pair, const ChangeOptions& options, const Eigen::ArrayXXi& dug = {});
+/// @param known  of the ground before; null: nothing
+Area survey(const SurfacePair& pair, const ChangeOptions& options,
+            const KnownGround* known = nullptr);
 
 }  // namespace excavplan

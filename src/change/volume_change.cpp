@@ -38,6 +38,7 @@ void check(const std::optional<Rectangle>& area, const std::string& name) {
 void check(const ChangeOptions& options) {
   check(options.dig_area, "dig_area");
   check(options.dump_area, "dump_area");
+  check(options.heap_near, "heap_near");
   constexpr double farthest = 1e6;  // [m]
   require(options.detection > 0.0, "detection", options.detection, "positive");
   require(options.growth > 0.0 && options.growth <= options.detection, "growth", options.growth,
@@ -162,6 +163,8 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   result.difference = std::move(area.grid);
   result.difference.z =
       (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.ground.difference);
+  result.filled = (area.unknown != 0 && area.ground.zone >= 0)
+                      .select(area.ground.difference, std::numeric_limits<double>::quiet_NaN());
   result.sd =
       (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.variance.sqrt());
   result.zone = (area.ground.zone >= 0).select(area.ground.zone + first, -1);
@@ -185,7 +188,7 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   std::vector<const HeightMap*> before;
   for (const SurfacePair* pair : pairs) {
     const bool is_known = known != nullptr && areas.empty();
-    areas.push_back(is_known ? survey(*pair, options, dug_before(*known)) : survey(*pair, options));
+    areas.push_back(survey(*pair, options, is_known ? known : nullptr));
     before.push_back(&pair->before.height);
   }
   if (known != nullptr) {

@@ -14,6 +14,7 @@
 #include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "density/density_in_soil.hpp"
@@ -198,6 +199,8 @@ SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOp
   SurfaceVolumes volumes;
   volumes.known = known_ground_on(before, *options.ground, soil);
   ChangeOptions told = options.change;
+  if (options.dug_path && !told.heap_near) told.heap_near = heap_area(*options.dug_path);
+  const ChangeOptions without_path = told;
   std::optional<Warning> doubt;
   if (options.dug_path && options.dug_path->start_x) {
     const Machine& machine = options.dug_path->machine;
@@ -207,10 +210,11 @@ SurfaceVolumes volumes_in_known_ground(const Surfaces& surfaces, const DensityOp
     volumes.change = change_of(surfaces, &*volumes.known, told);
     doubt = doubt_of(*volumes.change.cut);
     if (!doubt) return volumes;
-    volumes.known->cut = volumes.known->cover = {};
+    volumes.known->cut.resize(0, 0);  // {} would be the number 0 in all cells
+    volumes.known->cover.resize(0, 0);
   }
   volumes.known->common_sd = untold_loose_sd;
-  volumes.change = change_of(surfaces, &*volumes.known, options.change);
+  volumes.change = change_of(surfaces, &*volumes.known, without_path);
   if (doubt) volumes.change.warnings.push_back(*doubt);
   return volumes;
 }
@@ -410,12 +414,19 @@ void require_measured(const std::string& what, const Measured& figure) {
           "at least 0 and finite");
 }
 
+constexpr double farthest_dump = 1000.0;  // ours: from the swing axis [m]
+
 void check(const DensityLaw& law, const DensityOptions& options) {
   require_form(law.form);
   require_form(law.freed_form);
   const double cell = options.cell_size.value_or(1.0);
   require(cell > 0.0 && std::isfinite(cell), "cell_size", cell, "above 0 m and finite");
   if (options.dug_path) require_machine(options.dug_path->machine);
+  if (options.dug_path && options.dug_path->dump_at) {
+    const double far = options.dug_path->dump_at->cwiseAbs().maxCoeff();
+    require(far <= farthest_dump, "dump_at of the path that was dug", far,
+            "at most " + readable(farthest_dump) + " m");
+  }
   if (options.dug_path && options.dug_path->start_z) {
     require(std::isfinite(*options.dug_path->start_z), "start_z", *options.dug_path->start_z,
             "finite");
@@ -520,6 +531,16 @@ Rectangle worked_area(const DugPath& dug) {
   const double length = path.penetration_length + path.drag_length;
   const double half = 0.5 * dug.machine.bucket.width_outside + around;
   return {*dug.start_x - length - curl - around, -half, *dug.start_x + around, half};
+}
+
+std::optional<Rectangle> heap_area(const DugPath& dug) {
+  constexpr double slope = 0.65;     // of loose soil, 33 degrees
+  constexpr double spread_by = 2.0;  // of a heap on a heap, in radii of a cone
+  if (!dug.dump_at) return std::nullopt;
+  const double radius = std::cbrt(3.0 * heaped_capacity(dug.machine) / (pi * slope));
+  const Eigen::Vector2d low = dug.dump_at->array() - spread_by * radius;
+  const Eigen::Vector2d high = dug.dump_at->array() + spread_by * radius;
+  return Rectangle{low.x(), low.y(), high.x(), high.y()};
 }
 
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,

@@ -168,7 +168,12 @@ SeenGround seen_after(const DigInGround& dig, const GroundBefore& known, double 
     height = std::nan("");
   });
   seen.swept = bank_left(dig) + offset;
+  // As the volumes took it, with what lies between returns that are far apart.
+  Eigen::ArrayXXd taken =
+      seen.surface.z.isNaN().select(before.z + area.filled + offset, seen.surface.z);
+  taken = (seen.changed == 1).select(taken, std::nan("")).eval();
   keep_to_returns(returns_of(dig.surfaces.after), known, seen);
+  seen.filled = seen.surface.z.isNaN().select(taken, seen.surface.z);
   if (dig.known.cut.size() == 0) {
     seen.swept = seen.surface.z.isNaN().select(std::nan(""), seen.swept).eval();
   }
@@ -249,6 +254,8 @@ KnownGround known_ground_on(const HeightMap& grid, const GroundState& ground,
   known.loose = known_or(on_grid(terrain.bank.z.isNaN().select(std::nan(""), terrain.loose)), 0.0);
   if (ground.deviation.size() > 0) {
     known.loose_sd = std::sqrt(2.0) * known_or(on_grid(ground.deviation), 0.0);
+    const Eigen::ArrayXXd sd = known_or(ground.deviation, 0.0);
+    known.guessed_sd = known_or(on_grid((sd > reopened_sd).select(sd, 0.0)), 0.0);
   }
   if (soil != nullptr && terrain.loose_void_ratio.size() > 0) {
     known.swelling = known_or(
@@ -290,6 +297,7 @@ GroundState ground_after(const DensityOptions& options, const DigInGround& dig) 
   const GroundBefore known(*options.ground, before.height);
   const double offset = offset_of(known.surface, before.height, dig.change.areas.front());
   SeenGround after = seen_after(dig, known, offset);
+  if (!options.dug_path) after.filled.resize(0, 0);  // nothing tells that it was a dig
   after.time = options.scan_time;
   std::optional<double> loose;
   if (options.soil.kind) loose = options.soil.kind->void_ratio_loose;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/results/stated_dig.hpp>
 
+#include <vector>
+
 #include "base/files.hpp"
 #include "base/json.hpp"
 
@@ -28,6 +30,10 @@ StatedDig stated_dig(const std::string& file) {
   dig.path.drag_length = path.number("drag_length_m", 0.0, most_length);
   if (path.states("start_x_m")) {
     dig.start_x = path.number("start_x_m", -most_length, most_length);
+  }
+  if (result.states("dump_at_m")) {
+    const std::vector<double> at = result.numbers("dump_at_m", 2);
+    dig.dump_at = Eigen::Vector2d(at[0], at[1]);
   }
   dig.is_plan = tool == "plan-path";
   dig.density_percent = result.number("density_percent", 0.0, 100.0);

@@ -31,13 +31,14 @@ void require_seen(const SeenGround& seen) {
   require(fits(seen.deviation.rows(), seen.deviation.cols()) &&
               fits(seen.changed.rows(), seen.changed.cols()) &&
               fits(seen.swept.rows(), seen.swept.cols()) &&
+              fits(seen.filled.rows(), seen.filled.cols()) &&
               fits(seen.obstacles.rows(), seen.obstacles.cols()),
           "ground that was seen: a layer has another size than its surface");
 }
 
 /// What a survey says, on the grid of the state.
 struct Survey {
-  Eigen::ArrayXXd height, deviation, swept, obstacles, changed;
+  Eigen::ArrayXXd height, deviation, swept, filled, obstacles, changed;
   double common_sd;
   bool is_told;  ///< which cells changed
 
@@ -51,6 +52,7 @@ struct Survey {
     height = on_grid(seen.surface.z);
     deviation = on_grid(seen.deviation);
     swept = on_grid(seen.swept);
+    filled = on_grid(seen.filled);
     obstacles = on_grid(seen.obstacles);
     changed = Eigen::ArrayXXd::Zero(height.rows(), height.cols());
     if (!is_told) return;
@@ -85,7 +87,9 @@ class Updater {
     }
     const double z = survey_.height(at.row, at.col);
     if (std::isnan(z)) {
+      const double filled = known_at(survey_.filled, at, std::nan(""));
       if (swept_below(at)) leave_as_swept(at, bank, loose);
+      if (!std::isnan(filled + bank)) leave_as_filled(at, filled, bank, loose);
       return;
     }
     if (state_.terrain.obstacles.size() > 0) {
@@ -102,7 +106,8 @@ class Updater {
     }
     const double known_sd = std::isnan(deviation) ? sd : deviation;
     const double change = z - bank - loose;
-    const int cause = cause_of(at, change, std::hypot(sd, known_sd));
+    int cause = cause_of(at, change, std::hypot(sd, known_sd));
+    if (cause == nothing && is_guess(sd, known_sd)) cause = dig;
     if (cause == nothing) {
       const double weight = weight_of(sd, known_sd);
       bank += weight * change;
@@ -126,6 +131,11 @@ class Updater {
     return std::abs(change) > sure * sd ? cause : static_cast<int>(nothing);
   }
 
+  /// What was filled there gives way to what is seen.
+  static bool is_guess(double sd, double known_sd) {
+    return known_sd > reopened_sd && known_sd > 2.0 * sd;
+  }
+
   /// The bucket cut bank there, whatever lies in its place now.
   bool swept_below(Cell at) const {
     const double floor = known_at(survey_.swept, at, std::nan(""));
@@ -138,6 +148,13 @@ class Updater {
     loose = 0.0;
     double& deviation = state_.deviation(at.row, at.col);
     deviation = std::max(known_at(state_.deviation, at, 0.0), reopened_sd);
+  }
+
+  void leave_as_filled(Cell at, double filled, double& bank, double& loose) {
+    const double change = filled - bank - loose;
+    settle(at, filled, bank, loose);
+    double& deviation = state_.deviation(at.row, at.col);
+    deviation = std::max({known_at(state_.deviation, at, 0.0), filled_sd, 0.5 * std::abs(change)});
   }
 
   /// Variance of what was known, without what the heights of a survey share.

@@ -68,9 +68,15 @@ DensityEstimate estimate_in(const SiteEvent& event, const SiteSettings& settings
   return estimate_density({event.before.value_or(Scan{}), event.scan}, settings.law, options);
 }
 
+/// What a survey found in the frame of the machine.
+struct AtMachine {
+  GroundState before;
+  DensityEstimate estimate;
+};
+
 /// The dig in the frame of the machine, whose path lies in the plane y = 0.
-DensityEstimate estimate_at_machine(const SiteEvent& event, const SiteSettings& settings,
-                                    const GroundState& ground) {
+AtMachine estimate_at_machine(const SiteEvent& event, const SiteSettings& settings,
+                              const GroundState& ground) {
   const Eigen::Isometry3d to_machine = event.base.site_from_machine().inverse();
   SiteEvent turned = event;
   turned.scan = moved(event.scan, to_machine);
@@ -80,7 +86,9 @@ DensityEstimate estimate_at_machine(const SiteEvent& event, const SiteSettings& 
   if (change.dump_area) change.dump_area = moved(*change.dump_area, to_machine);
   const double cell = ground.terrain.bank.cell_size;
   const Rectangle extent = on_grid(moved(ground.terrain.bank.extent(), to_machine), cell);
-  return estimate_in(turned, settings, seen_by(ground, event.base, flat_ground(extent, cell)));
+  GroundState before = seen_by(ground, event.base, flat_ground(extent, cell));
+  DensityEstimate estimate = estimate_in(turned, settings, before);
+  return {std::move(before), std::move(estimate)};
 }
 
 /// Mixtures of soils keep to their range but for rounding.
@@ -132,6 +140,56 @@ HeightMap window_of(const HeightMap& map, const Rectangle& area) {
   return flat_ground({std::max(near.x_min, whole.x_min), std::max(near.y_min, whole.y_min),
                       std::min(near.x_max, whole.x_max), std::min(near.y_max, whole.y_max)},
                      map.cell_size, std::nan(""));
+}
+
+/// The other way round: where the frame of the site stands in that of the machine.
+BasePose inverse(const BasePose& base) {
+  const Eigen::Vector3d at = base.site_from_machine().inverse().translation();
+  return {at.x(), at.y(), at.z(), -base.heading};
+}
+
+/// Where a dig changed the ground, in the frame of the machine: about the bucket's way, and where
+/// soil came to lie.
+std::vector<Rectangle> changed_areas(const DugPath& dug, const DensityEstimate& estimate) {
+  std::vector<Rectangle> areas = {worked_area(dug)};
+  for (const ChangeZone& zone : estimate.change.zones) {
+    if (zone.kind == ZoneKind::dump || zone.kind == ZoneKind::spill) areas.push_back(zone.extent);
+  }
+  return areas;
+}
+
+/// Takes over what was found in the frame of the machine: the bank that the bucket left, and the
+/// surface that the scan does not show. What the change of frames makes of the ground is in both
+/// of that frame and stays out.
+/// @param area    in the frame of the machine
+/// @param before  of the site
+void take_found(const Rectangle& area, const SiteEvent& event, const AtMachine& found,
+                const GroundState& before, GroundState& ground) {
+  constexpr double telling = 0.01;  // ours [m]
+  Terrain& terrain = ground.terrain;
+  const HeightMap grid = window_of(terrain.bank, moved(area, event.base.site_from_machine()));
+  const GroundState was = seen_by(found.before, inverse(event.base), grid);
+  const GroundState is = seen_by(*found.estimate.ground_after, inverse(event.base), grid);
+  const Eigen::ArrayXXd sunk = is.terrain.bank.z - was.terrain.bank.z;
+  const Eigen::ArrayXXd rose = sunk + is.terrain.loose - was.terrain.loose;
+  for_each_cell(sunk, [&](Cell at) {
+    const auto to = cell_at(terrain.bank, grid.x(at.col), grid.y(at.row));
+    const auto known = cell_at(before.terrain.bank, grid.x(at.col), grid.y(at.row));
+    if (!to || !known) return;
+    const bool is_seen = ground.seen(to->row, to->col) == event.time;
+    const double fall = sunk(at.row, at.col), rise = rose(at.row, at.col);
+    if (!(std::abs(fall) > telling) && (is_seen || !(std::abs(rise) > telling))) return;
+    const double bank = before.terrain.bank.z(known->row, known->col);
+    const double surface = is_seen
+                               ? terrain.bank.z(to->row, to->col) + terrain.loose(to->row, to->col)
+                               : bank + before.terrain.loose(known->row, known->col) + rise;
+    const double left = std::min(bank + fall, surface);
+    if (std::isnan(left)) return;
+    terrain.bank.z(to->row, to->col) = left;
+    terrain.loose(to->row, to->col) = surface - left;
+    terrain.loose_void_ratio(to->row, to->col) = is.terrain.loose_void_ratio(at.row, at.col);
+    if (!is_seen) ground.deviation(to->row, to->col) = is.deviation(at.row, at.col);
+  });
 }
 
 /// Takes in what no scan showed before. @param extent  of the scan, within the ground
@@ -195,6 +253,9 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
     in_site.options.worked_area =
         moved(worked_area(*event.options.dug_path), event.base.site_from_machine());
   }
+  if (const auto heap = is_apart ? heap_area(*event.options.dug_path) : std::nullopt) {
+    in_site.options.change.heap_near = moved(*heap, event.base.site_from_machine());
+  }
   if (is_apart) in_site.options.dug_path = std::nullopt;
   if (is_apart) in_site.options.joint_work = std::nullopt;
   DensityEstimate estimate = estimate_in(in_site, settings, ground);
@@ -208,7 +269,15 @@ SurveyedEvent surveyed(const SiteEvent& event, const SiteSettings& settings,
     const auto& moved_by = estimate.registration;
     add_new_ground(moved_by ? corrected(event.scan, moved_by->correction) : event.scan,
                    place.extent, event.time, result.ground);
-    if (is_apart) estimate = estimate_at_machine(event, settings, ground);
+    if (is_apart) {
+      AtMachine found = estimate_at_machine(event, settings, ground);
+      if (event.options.dug_path->start_x && found.estimate.ground_after) {
+        for (const Rectangle& area : changed_areas(*event.options.dug_path, found.estimate)) {
+          take_found(area, event, found, ground, result.ground);
+        }
+      }
+      estimate = std::move(found.estimate);
+    }
   } else {
     result.ground = std::move(ground);
   }

@@ -107,6 +107,82 @@ TEST(KnownGround, SoilThatFellBackBelongsToTheCutWhereItIsTold) {
   EXPECT_NEAR(untold.before.value, trench.bank_cut() - trench.fallen * 1.6, 0.008);
 }
 
+/// Of the trench's floor 0.4 m are not seen.
+SurfacePair half_hidden(const Trench& trench, std::uint64_t seed) {
+  SurfacePair scene = trench.scene(0.003, seed);
+  HeightMap& after = scene.after.height;
+  for (Eigen::Index row = 0; row < after.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < after.z.cols(); ++col) {
+      const bool is_hidden =
+          after.x(col) > -0.3 && after.x(col) < 0.4 && std::abs(after.y(row)) < 0.7;
+      if (is_hidden) after.z(row, col) = std::nan("");
+    }
+  }
+  return scene;
+}
+
+TEST(KnownGround, AFloorThatIsHiddenLiesWhereTheBucketPassed) {
+  Trench trench;
+  trench.fallen = 0.06;
+  const SurfacePair scene = half_hidden(trench, 3);
+  const VolumeChange told = measure_change(scene, trench.known(scene.before.height, true));
+  EXPECT_NEAR(told.excavated.value, 0.24 * 1.6, 0.012);
+  EXPECT_LT(told.excavated.sd, 0.02);
+  EXPECT_EQ(std::count_if(told.warnings.begin(), told.warnings.end(),
+                          [](const Warning& warning) { return warning.ends_trust; }),
+            0);
+  const AreaChange& area = told.areas.front();
+  const auto at = [&](const Eigen::ArrayXXd& layer, double x, double y) {
+    const HeightMap& grid = area.difference;
+    return layer(static_cast<Eigen::Index>((y - grid.origin.y()) / grid.cell_size),
+                 static_cast<Eigen::Index>((x - grid.origin.x()) / grid.cell_size));
+  };
+  EXPECT_TRUE(std::isnan(at(area.difference.z, 0.22, 0.02)));
+  EXPECT_NEAR(at(area.filled, 0.22, 0.02), -0.24, 0.01);
+  EXPECT_TRUE(std::isnan(at(area.filled, 1.02, 0.02)));
+  const VolumeChange untold = measure_change(scene, trench.known(scene.before.height, false));
+  EXPECT_GT(std::abs(untold.excavated.value - 0.24 * 1.6), 0.02);
+}
+
+TEST(KnownGround, AFloorThatNobodySawIsNotTrusted) {
+  const Trench trench;
+  SurfacePair scene = trench.scene(0.003, 5);
+  HeightMap& after = scene.after.height;
+  for (Eigen::Index row = 0; row < after.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < after.z.cols(); ++col) {
+      const bool is_hidden =
+          after.x(col) > 0.5 && after.x(col) < 2.3 && std::abs(after.y(row)) < 0.7;
+      if (is_hidden) after.z(row, col) = std::nan("");
+    }
+  }
+  const VolumeChange change = measure_change(scene, trench.known(scene.before.height, true));
+  ASSERT_TRUE(change.cut);
+  EXPECT_GT(change.cut->unseen_area, 0.5 * change.cut->swept_area);
+  EXPECT_TRUE(std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& each) {
+    return each.code == WarningCode::zone_unseen;
+  }));
+}
+
+TEST(KnownGround, SoilFarFromWhereTheBucketWasEmptiedIsNoHeap) {
+  const Trench trench;
+  const SurfacePair scene = trench.scene(0.003, 6);
+  ChangeOptions options;
+  options.heap_near = Rectangle{4.0, -1.0, 5.5, 1.0};
+  EXPECT_NEAR(measure_change(scene, options).dumped.value, trench.heap(), 0.01);
+  options.heap_near = Rectangle{1.0, 1.2, 3.0, 2.0};
+  EXPECT_EQ(measure_change(scene, options).dumped.value, 0.0);
+}
+
+TEST(KnownGround, WhatWasGuessedBeforeIsInTheError) {
+  const Trench trench;
+  const SurfacePair scene = trench.scene(0.003, 4);
+  KnownGround known = trench.known(scene.before.height, true);
+  const double sure = measure_change(scene, known).excavated.sd;
+  known.guessed_sd = known.cover * 0.1;
+  const double guessed = measure_change(scene, known).excavated.sd;
+  EXPECT_NEAR(std::sqrt(guessed * guessed - sure * sure), 0.1 * 1.6, 0.02);
+}
+
 TEST(KnownGround, GroundWithoutLooseSoilIsAsUnknownGround) {
   Trench trench;
   trench.loose = 0.0;
@@ -226,6 +302,25 @@ TEST(UpdatedGround, WhatNobodyDugIsNoLongerKnownWell) {
   EXPECT_NEAR(after.terrain.bank.z(0, 0), 0.2, 1e-12);
   EXPECT_NEAR(after.terrain.loose(0, 0), 0.3, 1e-12);
   EXPECT_EQ(after.deviation(0, 0), reopened_sd);
+}
+
+TEST(UpdatedGround, WhatABalanceFilledStandsUntilItIsSeen) {
+  const auto one = [](double value) { return Eigen::ArrayXXd::Constant(1, 1, value); };
+  const GroundState before = state_of(one(0.30), one(0.0));
+  SeenGround hidden = seen_as(one(nan), 0.002);
+  hidden.changed = Eigen::ArrayXXi::Ones(1, 1);
+  hidden.filled = one(0.70);
+  const GroundState filled = updated_ground(before, hidden);
+  EXPECT_EQ(filled.terrain.bank.z(0, 0), 0.30);
+  EXPECT_NEAR(filled.terrain.loose(0, 0), 0.40, 1e-12);
+  EXPECT_NEAR(filled.deviation(0, 0), 0.20, 1e-12);
+  EXPECT_EQ(filled.seen(0, 0), 100.0);
+  SeenGround seen = seen_as(one(0.60), 0.002);
+  seen.changed = Eigen::ArrayXXi::Zero(1, 1);
+  const GroundState after = updated_ground(filled, seen);
+  EXPECT_EQ(after.terrain.bank.z(0, 0), 0.30);
+  EXPECT_NEAR(after.terrain.loose(0, 0), 0.30, 1e-12);
+  EXPECT_LT(after.deviation(0, 0), 0.01);
 }
 
 TEST(UpdatedGround, ThingsInTheWayAreNotedAndTheGroundBelowStays) {

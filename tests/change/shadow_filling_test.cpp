@@ -104,7 +104,7 @@ Filled filled(const HeightMap& after, const Eigen::Vector3d& sensor) {
   Surface places;
   places.sensors = {sensor};
   const std::optional<SensorPlace> told;
-  filled.variance = fill_shadows({before, filled.map, mixed, places, told}, filled.ground);
+  filled.variance = fill_shadows({before, filled.map, mixed, places, told, {}}, filled.ground);
   return filled;
 }
 

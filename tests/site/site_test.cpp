@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include <excavplan/sensing/sensor_setup.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "site/site_digs.hpp"
@@ -198,6 +200,104 @@ TEST(Site, ADigOfATurnedMachineIsMeasuredInItsFrame) {
 }
 
 // ---- What is told and refused -----------------------------------------------------------------
+
+/// A machine with a lidar above its cab that digs at one place and dumps on one heap, in gravel.
+class HeapOnHeap {
+ public:
+  SiteSettings settings = {load_soil(find_data_file("soils/gravel.json")),
+                           load_machine(find_data_file("machines/zx120.json")),
+                           load_density_law(find_data_file("laws/zx120-gravel.json")),
+                           0.05,
+                           {}};
+  BasePose base;
+
+  explicit HeapOnHeap(const BasePose& at) : base(at) {
+    ground_ = undisturbed(flat_ground({-3.0, -4.0, 12.0, 8.0}, 0.05));
+  }
+
+  SiteEvent look() {
+    SiteEvent event;
+    const SensorSetup& lidar = sensor_setup_of_word("cab-lidar");
+    for (PlacedScan& look : look_at(ground_.surface(), lidar, {0.0, 0.535, 1.035}, ++scans_)) {
+      auto cloud = std::make_shared<Cloud>();
+      cloud->sensor_origin = base.site_from_machine() * look.place;
+      for (const Eigen::Vector3d& point : look.points) {
+        cloud->points.push_back(base.site_from_machine() * point);
+      }
+      cloud->width = cloud->points.size();
+      event.scan.clouds.push_back(cloud);
+    }
+    event.scan.z_is_up = true;
+    event.time = 100.0 * static_cast<double>(scans_);
+    event.base = base;
+    event.dug = false;
+    return event;
+  }
+  SiteEvent dig() {
+    SceneOptions options;
+    options.start_x = 6.2 - 0.25 * static_cast<double>(scans_);
+    options.dump_at = {3.0, 3.0};
+    const DigScene scene = run_scene(settings.machine, settings.soil, 20.0, ground_, options);
+    ground_ = scene.after;
+    heap = scene.volumes.dumped;
+    SiteEvent event = look();
+    event.dug = true;
+    event.options.dug_path =
+        DugPath{settings.machine, options.path, options.start_x, {}, options.dump_at};
+    return event;
+  }
+
+  double heap = 0.0;  ///< that the last dig left
+
+ private:
+  Terrain ground_;
+  std::uint64_t scans_ = 0;
+};
+
+TEST(Site, SoilHiddenBehindAHeapCountsOnce) {
+  for (const BasePose& base : {BasePose{}, BasePose{-2.4, 0.5, 0.0, 0.3}}) {
+    const TemporaryFolder folder;
+    HeapOnHeap digs(base);
+    Site site(folder.file("site"), digs.settings, SiteAccess::write);
+    site.update(digs.look());
+    for (int number = 1; number <= 5; ++number) {
+      SCOPED_TRACE(number);
+      const SiteUpdate update = site.update(digs.dig());
+      ASSERT_TRUE(update.estimate);
+      EXPECT_NEAR(update.estimate->change.dumped.value, digs.heap, 0.015);
+    }
+  }
+}
+
+TEST(Site, ADigOffTheGridLeavesTheRestOfTheBankAsItWas) {
+  const TemporaryFolder folder;
+  const BasePose base{-2.413, 0.517, 0.0, 0.3};
+  HeapOnHeap digs(base);
+  Site site(folder.file("site"), digs.settings, SiteAccess::write);
+  site.update(digs.look());
+  site.update(digs.dig());
+  const Terrain before = site.ground().terrain;
+  for (int number = 0; number < 3; ++number) {  // told of a dig beside it, but nothing changed
+    SiteEvent again = digs.look();
+    again.dug = true;
+    again.options.dug_path = DugPath{digs.settings.machine, paper_fixed_path(), 7.1, {}, {}};
+    site.update(again);
+  }
+  const HeightMap& bank = site.ground().terrain.bank;
+  double squares = 0.0, cells = 0.0;
+  for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
+      const double was = height_at(before.bank, bank.x(col), bank.y(row));
+      const double ahead =
+          (base.site_from_machine().inverse() * Eigen::Vector3d(bank.x(col), bank.y(row), 0.0)).x();
+      if (std::isnan(was - bank.z(row, col)) || !(was < -0.05) || ahead > 5.0) continue;
+      squares += std::pow(bank.z(row, col) - was, 2);
+      cells += 1.0;
+    }
+  }
+  ASSERT_GT(cells, 50.0);
+  EXPECT_LT(std::sqrt(squares / cells), 0.006);
+}
 
 TEST(SiteDoubts, AScanThatIsTakenTwiceIsRefused) {
   const TemporaryFolder folder;

@@ -50,6 +50,64 @@ TEST_F(SiteTool, DigsInARowAreRemembered) {
   EXPECT_EQ(plan.at("density_percent"), plan.at("site").at("density_percent"));
 }
 
+TEST_F(SiteTool, LooksFromSeveralPlacesAreOneScan) {
+  const std::string scan = folder.file("look");
+  answer("simulate-dig", {"--density", "55", "--setup", "cab-lidar", "--each-look", "--before",
+                          scan + "-a.pcd", "--after", scan + "-b.pcd", "--base=-1,0"});
+  const auto looks = [&](const std::string& name, const std::string& option) {
+    return Words{option, name + "-2.pcd", option, name + "-3.pcd"};
+  };
+  const Words pair = {scan + "-a.pcd", scan + "-b.pcd", "--soil", "loam"};
+  const json whole = answer("estimate-density", pair + looks(scan + "-a", "--before-also") +
+                                                    looks(scan + "-b", "--after-also"));
+  const auto has_code = [](const json& result, const std::string& code) {
+    for (const json& warning : result.at("warnings")) {
+      if (warning.at("code") == code) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(whole.at("trustworthy")) << whole.at("warnings");
+  EXPECT_FALSE(has_code(whole, "sensor_place_inferred"));
+  EXPECT_NEAR(whole.at("density_percent"), 55.0, 12.0);
+  EXPECT_TRUE(contains(content_of(scan + "-a.pcd").substr(0, 300), "VIEWPOINT -0.4 0.7 4.2"));
+  const auto refused = [&](const Words& words, const std::string& text) {
+    const ProgramResult result = run_program("estimate-density", pair + words);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_TRUE(contains(result.err, text)) << result.err;
+  };
+  refused({"--after-also", scan + "-b.pcd"}, "-b.pcd is given twice");
+  refused({"--after-also", scan + "-b-2.pcd", "--sensor-origin", "1,1,4"},
+          "--after-also excludes --sensor-origin");
+  const ProgramResult ply =
+      run_program("simulate-dig", {"--density", "55", "--each-look", "--after", scan + ".ply"});
+  EXPECT_EQ(ply.code, 2);
+  EXPECT_TRUE(contains(ply.err, "must end in .pcd")) << ply.err;
+  const ProgramResult alone =
+      run_program("estimate-density", Words{scan + "-b.pcd", "--site", site(), "--soil", "loam"} +
+                                          looks(scan + "-a", "--before-also"));
+  EXPECT_EQ(alone.code, 2);
+  EXPECT_TRUE(contains(alone.err, "--before-also needs BEFORE")) << alone.err;
+}
+
+TEST_F(SiteTool, WhereTheBucketWasEmptiedIsToldOfADig) {
+  const std::string one = dig(1);
+  const Words words = {one + "b.xyz", "--site", site(), "--soil", "loam"};
+  answer("estimate-density", {one + "a.xyz", "--site", site(), "--soil", "loam"});
+  const ProgramResult untold = run_program("estimate-density", words + Words{"--dump-at", "3,3"});
+  EXPECT_EQ(untold.code, 2);
+  EXPECT_TRUE(contains(untold.err, "--dump-at needs --dug")) << untold.err;
+  const Words look = words + Words{"--dug", one + ".json", "--no-update"};
+  const json told = answer("estimate-density", look);
+  const ProgramResult elsewhere =
+      run_program("estimate-density", look + Words{"--dump-at", "3,-3", "--json"});
+  ASSERT_EQ(elsewhere.code, 0) << elsewhere.err;
+  const auto rose = [](const json& result) {
+    return result.at("volume").at("spilled_m3").get<double>() +
+           result.at("volume").at("dumped_m3").get<double>();
+  };
+  EXPECT_GT(rose(told) - rose(json::parse(elsewhere.out)), 0.1);
+}
+
 TEST_F(SiteTool, UndoLookAndShow) {
   const std::string one = dig(1);
   const Words words = {one + "b.xyz", "--site", site(), "--soil", "loam"};

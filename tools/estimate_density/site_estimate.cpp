@@ -34,10 +34,12 @@ void add_told_dig(const SiteEstimateInputs& inputs, const Machine& machine, Site
   event.base = base_of(inputs.at);
   event.dug = !inputs.no_dig;
   event.stalled = inputs.stalled;
+  if (inputs.dump_at && !inputs.dug) usage_error("--dump-at needs --dug");
   if (!inputs.dug) return;
   if (event.options.dug_path) usage_error("--dug and --dug-path both tell the path: give one");
   const StatedDig told = stated_dig(*inputs.dug);
-  event.options.dug_path = DugPath{machine, told.path, told.start_x};
+  event.options.dug_path =
+      DugPath{machine, told.path, told.start_x, {}, inputs.dump_at ? inputs.dump_at : told.dump_at};
   event.stalled = event.stalled || told.stalled;
   if (told.is_plan && told.joint_work > 0.0) {
     event.foretold = ForetoldDig{told.density_percent, told.joint_work};

@@ -14,6 +14,9 @@ void declare_site(Arguments& arguments, SiteEstimateInputs& inputs) {
     arguments.file("dug", inputs.dug,
                    "the dig between the scans: a result of plan-path or simulate-dig --json, "
                    "for its path, start, foretold work and stall");
+    arguments.option("dump-at", inputs.dump_at,
+                     "where --dug emptied the bucket, in the machine's frame: soil elsewhere is no "
+                     "heap of it (default: as a result of simulate-dig tells)");
     arguments.flag("no-dig", inputs.no_dig, "nothing was dug: the scan shows the ground alone");
     arguments.flag("stalled", inputs.stalled, "the dig was given up: the ground is strong");
     arguments.flag("no-update", inputs.no_update, "leave the site as it is");
@@ -22,8 +25,8 @@ void declare_site(Arguments& arguments, SiteEstimateInputs& inputs) {
         "time", inputs.time, Quantity::time,
         "when AFTER was scanned, since 1970-01-01 UTC (default: as recorded, else now)");
   });
-  arguments.exclude("undo", {"no-update", "dug", "no-dig", "stalled", "time"});
-  arguments.exclude("no-dig", {"dug", "stalled"});
+  arguments.exclude("undo", {"no-update", "dug", "dump-at", "no-dig", "stalled", "time"});
+  arguments.exclude("no-dig", {"dug", "dump-at", "stalled"});
 }
 
 }  // namespace excavplan::tools

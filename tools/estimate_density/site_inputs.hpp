@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <Eigen/Core>
+
 #include "frame/arguments.hpp"
 #include "inputs/site_folder.hpp"
 
@@ -14,6 +16,7 @@ namespace excavplan::tools {
 struct SiteEstimateInputs {
   SiteFolderInputs at;
   std::optional<std::string> dug;
+  std::optional<Eigen::Vector2d> dump_at;  ///< of the bucket
   bool no_update = false;
   bool no_dig = false;
   bool stalled = false;

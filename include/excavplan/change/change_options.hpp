@@ -13,6 +13,8 @@ namespace excavplan {
 struct ChangeOptions {
   std::optional<Rectangle> dig_area;   ///< only falling ground in here is the hole
   std::optional<Rectangle> dump_area;  ///< only rising ground in here is the heap
+  /// Ground that rose outside, away from the hole, is none of the dig; what rose inside may be.
+  std::optional<Rectangle> heap_near = {};
   double detection = 5.0;  ///< a zone has a 3 x 3 mean of at least this many of its sd [-], > 0
   double growth = 3.0;     ///< and grows to cells of this many sd [-], in (0, detection]
   double min_zone_area = 0.03;  ///< smaller zones are noise [m^2], >= 0

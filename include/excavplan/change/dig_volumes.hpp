@@ -46,6 +46,8 @@ struct AreaChange {
   double noise_sd = 0.0;  ///< of one stable cell of `difference`, at least 0.1 mm [m]
   double datum = 0.0;     ///< robust mean change of stable ground, taken off `difference` [m]
   Eigen::ArrayXXd sd;     ///< of `difference`, but for that of the datum [m]; NaN where unknown
+  Eigen::ArrayXXd filled =
+      {};  ///< as `difference`, of unknown cells that count in a zone [m]; NaN elsewhere
 };
 
 /// What a change of the ground looks like.

@@ -16,6 +16,8 @@ namespace excavplan {
 struct KnownGround {
   Eigen::ArrayXXd loose;     ///< thickness of the loose soil [m], >= 0; NaN counts as none
   Eigen::ArrayXXd loose_sd;  ///< of it, independent from cell to cell [m]; NaN counts as 0
+  /// Of the surface before where no survey showed it and neighbours err alike [m]; 0 or NaN: seen.
+  Eigen::ArrayXXd guessed_sd;
   double common_sd = 0.005;  ///< of it in all cells alike [m]; ours: two registrations
   /// What loose soil gains when it is dug again, as a share of its volume: it was compacted since
   /// it was dug. Empty: nothing.

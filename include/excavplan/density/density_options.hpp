@@ -40,11 +40,18 @@ struct DugPath {
   DigParameters parameters;            ///< of the path
   std::optional<double> start_x;       ///< where the path enters the ground [m]
   std::optional<double> start_z = {};  ///< and how high; else by the scan before [m]
+  /// Where the bucket was emptied (x, y): in known ground only soil about there, or beside the
+  /// hole, is of the dig [m].
+  std::optional<Eigen::Vector2d> dump_at = {};
 };
 
 /// The ground that the dig can have changed: the bucket's way with a metre (ours) around it.
 /// @throws Error (bad_input) without a start
 Rectangle worked_area(const DugPath& dug);
+
+/// Where the heap of a bucket lies, also on what was dumped there before: within twice the radius
+/// of a cone of the heaped capacity; ours. Nothing where DugPath::dump_at is not told.
+std::optional<Rectangle> heap_area(const DugPath& dug);
 
 /// Settings of estimate_density().
 struct DensityOptions {

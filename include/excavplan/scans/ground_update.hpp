@@ -24,6 +24,9 @@ struct SeenGround {
   Eigen::ArrayXXi changed = {};
   Eigen::ArrayXXd swept =
       {};  ///< top of the bank that a bucket left [m]; NaN elsewhere; empty: not told
+  /// Surface as the balance of a dig took it, also where it was not seen [m]; NaN: not told; empty:
+  /// nowhere.
+  Eigen::ArrayXXd filled = {};
   Eigen::ArrayXXd obstacles = {};  ///< tops of what is no soil [m]; NaN elsewhere; empty: none
   double time = 0.0;               ///< since 1970-01-01 UTC [s]
   /// Deviation that neighbouring heights of a survey share: that of the mean of many surveys does
@@ -35,14 +38,19 @@ struct SeenGround {
 /// surface is not known [m]; ours.
 inline constexpr double reopened_sd = 0.05;
 
+/// Likewise of a cell that no survey showed after a dig changed it: neighbours err alike. That it
+/// is more than reopened_sd tells such cells apart [m]; ours.
+inline constexpr double filled_sd = 0.06;
+
 /// The ground after a survey, on the grid of the state.
 ///
 /// A cell that did not change is the mean of least variance of what was known and what was seen,
 /// its loose soil as thick as before. In one that did, the bank is the lowest of what it was, what
 /// the bucket left of it and the surface seen; what lies on it is loose. A cell that was never seen
 /// is bank. One that was not seen now stays as it is, with its time; where the bucket swept it is
-/// left as by the bucket, with a deviation of reopened_sd at least. Under what stands on the ground
-/// the layers stay and its top is noted. A cell that something else changed has a deviation of
+/// left as by the bucket, and what a dig's balance filled is taken over until it is seen, with a
+/// deviation of half of what it adds, of filled_sd at least. Under what stands on the ground the
+/// layers stay and its top is noted. A cell that something else changed has a deviation of
 /// reopened_sd at least.
 ///
 /// @param loose_void_ratio  of soil that was dug now, for states with a void ratio in each cell
