@@ -143,8 +143,11 @@ void set_kinds(std::vector<Area>& areas, const Attribution& attribution,
   for_each_counted([&](Area& area, std::size_t z) {
     if (area.zones[z].volume < 0.0) return;
     const Eigen::Vector2d& at = area.zones[z].centre;
-    const bool is_dumped = &area != areas.data() || !beside[z] ||
-                           (options.dump_area && options.dump_area->contains(at.x(), at.y()));
+    const auto is_in = [&](const std::optional<Rectangle>& told) {
+      return told && told->contains(at.x(), at.y());
+    };
+    const bool is_dumped =
+        &area != areas.data() || !beside[z] || is_in(options.dump_area) || is_in(options.heap_near);
     area.kinds[z] = is_dumped ? ZoneKind::dump : ZoneKind::spill;
   });
   if (areas.size() == 1 && !options.dump_area) find_heap_beside(areas[0]);

@@ -113,15 +113,16 @@ class ChangeReader {
   }
 
   /// The largest zone of a sign that is more than its error, or of all; of those that rose, one
-  /// away from the hole.
+  /// away from the hole, or where the bucket was emptied.
   std::optional<Place> largest(std::size_t area, double sign) const {
     std::optional<Place> found;
     bool is_found_sure = false;
     for (std::size_t z = 0; z < areas_[area].zones.size(); ++z) {
       const Place p{area, z};
       const double volume = sign * zone(p).volume;
+      const bool is_where_told = given(sign) || options_.heap_near;
       const bool is_candidate = volume > 0.0 && in_given(p, sign) &&
-                                (sign < 0.0 || areas_.size() > 1 || given(sign) || !beside(p));
+                                (sign < 0.0 || areas_.size() > 1 || is_where_told || !beside(p));
       if (!is_candidate) continue;
       const bool is_sure = significance(p) > established;
       const bool is_larger = !found || volume > sign * zone(*found).volume;

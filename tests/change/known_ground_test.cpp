@@ -169,6 +169,9 @@ TEST(KnownGround, SoilFarFromWhereTheBucketWasEmptiedIsNoHeap) {
   ChangeOptions options;
   options.heap_near = Rectangle{4.0, -1.0, 5.5, 1.0};
   EXPECT_NEAR(measure_change(scene, options).dumped.value, trench.heap(), 0.01);
+  options.spill_distance = 3.0;  // the heap lies 2 m from the hole
+  EXPECT_NEAR(measure_change(scene, options).dumped.value, trench.heap(), 0.01);
+  options.spill_distance = ChangeOptions().spill_distance;
   options.heap_near = Rectangle{1.0, 1.2, 3.0, 2.0};
   EXPECT_EQ(measure_change(scene, options).dumped.value, 0.0);
 }
