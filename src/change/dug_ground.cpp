@@ -23,10 +23,10 @@ struct OnFloor {
 
 class SweptFloor {
  public:
-  SweptFloor(const KnownGround& known, const HeightMap& before, const HeightMap& after,
-             const ChangedGround& ground)
+  SweptFloor(const KnownGround& known, const Eigen::ArrayXXd& lowest, const HeightMap& before,
+             const HeightMap& after, const ChangedGround& ground)
       : known_(known),
-        lowest_(lowest_change(known)),
+        lowest_(lowest),
         change_(after.z - before.z - ground.datum),
         hidden_(after.z.isNaN() && !before.z.isNaN()),
         zone_(ground.zone) {}
@@ -69,10 +69,10 @@ class SweptFloor {
 
  private:
   const KnownGround& known_;
-  const Eigen::ArrayXXd lowest_;
+  const Eigen::ArrayXXd& lowest_;
   const Eigen::ArrayXXd change_;
   const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> hidden_;
-  const Eigen::ArrayXXi zone_;
+  const Eigen::ArrayXXi& zone_;
 };
 
 }  // namespace
@@ -96,11 +96,11 @@ Eigen::ArrayXXd lowest_change(const KnownGround& known) {
   return lowest;
 }
 
-std::vector<double> fill_swept(const KnownGround& known, const HeightMap& before, HeightMap& after,
-                               ChangedGround& ground) {
+std::vector<double> fill_swept(const KnownGround& known, const Eigen::ArrayXXd& lowest,
+                               const HeightMap& before, HeightMap& after, ChangedGround& ground) {
   std::vector<double> variance(ground.zone_is_cut.size(), 0.0);
-  if (known.cut.size() == 0) return variance;
-  const SweptFloor swept(known, before, after, ground);
+  if (lowest.size() == 0) return variance;
+  const SweptFloor swept(known, lowest, before, after, ground);
   const int zone = swept.largest_zone();
   if (zone < 0) return variance;
   const OnFloor fallen = swept.on_floor();

@@ -29,11 +29,11 @@ Eigen::ArrayXXd lowest_change(const KnownGround& known);
 /// else by a fifth of the cut. Its cells join the largest zone that fell there; without one, or
 /// without a cut that is told, nothing is filled. All numbers are ours.
 ///
+/// @param lowest  lowest_change()
 /// @param after  NaN where unknown
 /// @return variance of the sum of the filled heights, by zone [m^2]: all err alike, by the
-/// deviation
-///         of what lies on the floor
-std::vector<double> fill_swept(const KnownGround& known, const HeightMap& before, HeightMap& after,
-                               ChangedGround& ground);
+///         deviation of what lies on the floor
+std::vector<double> fill_swept(const KnownGround& known, const Eigen::ArrayXXd& lowest,
+                               const HeightMap& before, HeightMap& after, ChangedGround& ground);
 
 }  // namespace excavplan

@@ -437,8 +437,8 @@ UnseenFilling fill_unseen(Scans& scans, const KnownGround* known, Area& area) {
   };
   Eigen::ArrayXXd lowest;
   if (known != nullptr) {
-    filling.variance = fill_swept(*known, scans.before, scans.after, area.ground);
     lowest = lowest_change(*known);
+    filling.variance = fill_swept(*known, lowest, scans.before, scans.after, area.ground);
   }
   filling.by = is_filled().select(
       Eigen::ArrayXXi::Constant(area.unknown.rows(), area.unknown.cols(), path), 0);
